@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "phiz/core/progress.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <utility>
+
+namespace phiz {
+
+namespace {
+
+std::atomic<bool> quiet_flag{false};
+volatile std::sig_atomic_t interrupt_flag = 0;
+
+void on_signal(int signal_number) {
+  interrupt_flag = 1;
+  std::signal(signal_number, SIG_DFL);
+}
+
+bool is_terminal() { return ::isatty(STDERR_FILENO) != 0; }
+
+}  // namespace
+
+Progress::Progress(std::string task, std::ptrdiff_t total)
+    : task_(std::move(task)), total_(total), start_(std::chrono::steady_clock::now()), drawn_(start_) {}
+
+Progress::~Progress() { draw(true); }
+
+void Progress::set_quiet(bool quiet) { quiet_flag = quiet; }
+
+void Progress::advance(std::ptrdiff_t steps) {
+  done_ += steps;
+  const auto now = std::chrono::steady_clock::now();
+  const auto pause = is_terminal() ? std::chrono::milliseconds(100) : std::chrono::milliseconds(5000);
+  if (now - drawn_ >= pause) {
+    drawn_ = now;
+    draw(false);
+  }
+}
+
+void Progress::draw(bool last) {
+  if (quiet_flag) return;
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  const double share = total_ > 0 ? std::min(1.0, static_cast<double>(done_) / static_cast<double>(total_)) : 1.0;
+  if (is_terminal()) {
+    constexpr int width = 30;
+    const int filled = static_cast<int>(share * width);
+    std::fprintf(stderr, "\r%-26s [%.*s%*s] %3d%% %td/%td %.1f s", task_.c_str(), filled,
+                 "##############################", width - filled, "", static_cast<int>(share * 100), done_, total_,
+                 seconds);
+    if (last) std::fputc('\n', stderr);
+  } else {
+    std::fprintf(stderr, "%s: %td/%td, %.1f s\n", task_.c_str(), done_, total_, seconds);
+  }
+  std::fflush(stderr);
+}
+
+void catch_interrupts() {
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+}
+
+bool interrupted() { return interrupt_flag != 0; }
+
+}  // namespace phiz

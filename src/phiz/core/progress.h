@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Progress of long work: a bar on a terminal, plain lines otherwise; and cancellation by Ctrl-C.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+namespace phiz {
+
+/// Reports progress of `total` steps on standard error. Quiet when `set_quiet(true)` was called (e.g. with --json -).
+class Progress {
+ public:
+  Progress(std::string task, std::ptrdiff_t total);
+  ~Progress();  ///< ends the bar's line
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void advance(std::ptrdiff_t steps = 1);
+
+  static void set_quiet(bool quiet);
+
+ private:
+  void draw(bool last);
+
+  std::string task_;
+  std::ptrdiff_t total_;
+  std::ptrdiff_t done_ = 0;
+  std::chrono::steady_clock::time_point start_;
+  std::chrono::steady_clock::time_point drawn_;
+};
+
+/// Makes Ctrl-C (SIGINT) and SIGTERM set a flag instead of ending the process; a second Ctrl-C ends it.
+void catch_interrupts();
+/// True once the user has asked to stop. Long loops ask after each finished step.
+bool interrupted();
+
+}  // namespace phiz
