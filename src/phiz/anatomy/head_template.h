@@ -55,9 +55,9 @@ struct SkullLandmark {
 struct Muscle {
   std::string name;
   std::vector<MatrixX3d> fibres;
-  VectorXi tets;         ///< rows of volume.T that contain some of it
-  VectorXd fraction;     ///< share of the tet's volume, in (0, 1]
-  MatrixX3d direction;   ///< unit fibre direction per entry of `tets`
+  VectorXi tets;        ///< rows of volume.T that contain some of it
+  VectorXd fraction;    ///< share of the tet's volume, in (0, 1]
+  MatrixX3d direction;  ///< unit fibre direction per entry of `tets`
 };
 
 /// A patch of the simulation skin that takes part in contact.
@@ -77,15 +77,17 @@ struct HeadTemplate {
   std::string name;        ///< e.g. "builtin-standard"
   std::string provenance;  ///< where it comes from, with licences of the sources
 
-  TetMesh volume;          ///< flesh, skull and mandible tets (tags: Tissue); flesh conforms to skin and bones
-  VectorXi carrier;        ///< Carrier per vertex of `volume`: flesh = free, skull or mandible = fixed to that bone
-  VectorXi skin_vertices;  ///< rows of volume.V on the skin surface (face, lips, oral cavity, sockets), s entries
-  MatrixX3i skin_triangles;///< simulation skin: outward triangles over rows of volume.V
+  TetMesh volume;            ///< flesh, skull and mandible tets (tags: Tissue); flesh conforms to skin and bones
+  VectorXi carrier;          ///< Carrier per vertex of `volume`: flesh = free, skull or mandible = fixed to that bone
+  VectorXi skin_vertices;    ///< rows of volume.V on the skin surface (face, lips, oral cavity, sockets), s entries
+  MatrixX3i skin_triangles;  ///< simulation skin: outward triangles over rows of volume.V
 
-  TriangleMesh skin;       ///< the skin as drawn, with UVs: at least as fine as the simulation skin
-  SparseMatrixd skin_sampling;       ///< s x n_skin: simulation skin from drawn skin (rows sum to 1)
-  SparseMatrixd skin_interpolation;  ///< n_skin x s: drawn skin from simulation skin, applied to displacements (rows sum to 1)
-  std::map<std::string, VectorXi> skin_regions;  ///< named vertex sets of `skin`: upperLip, lowerLip, leftUpperLid, scalp, ...
+  TriangleMesh skin;            ///< the skin as drawn, with UVs: at least as fine as the simulation skin
+  SparseMatrixd skin_sampling;  ///< s x n_skin: simulation skin from drawn skin (rows sum to 1)
+  SparseMatrixd
+      skin_interpolation;  ///< n_skin x s: drawn skin from simulation skin, applied to displacements (rows sum to 1)
+  std::map<std::string, VectorXi>
+      skin_regions;  ///< named vertex sets of `skin`: upperLip, lowerLip, leftUpperLid, scalp, ...
 
   std::vector<Part> parts;
   JawJoint jaw;
@@ -99,9 +101,9 @@ struct HeadTemplate {
   Vector3d right_eye_centre = Vector3d::Zero();
 };
 
-/// Throws phiz::Error(bad_input) naming the first thing that is wrong: counts, index ranges, NaN, inverted or degenerate tets,
-/// non-manifold skin, weights that do not sum to one, unknown names, a head that is not the size of a head (wrong unit).
-/// `where` is put in front of the message, e.g. the file name.
+/// Throws phiz::Error(bad_input) naming the first thing that is wrong: counts, index ranges, NaN, inverted or
+/// degenerate tets, non-manifold skin, weights that do not sum to one, unknown names, a head that is not the size of a
+/// head (wrong unit). `where` is put in front of the message, e.g. the file name.
 void validate(const HeadTemplate& head, const std::string& where);
 
 /// The part of that name, or nullptr.

@@ -10,7 +10,8 @@
 namespace phiz {
 
 /// Pose of the mandible relative to the skull: rotation about the condyle axis (opening, radians), rotation about the
-/// vertical axis (lateral swing, radians; positive turns the chin to the person's left), and the translation of the condyles (metres).
+/// vertical axis (lateral swing, radians; positive turns the chin to the person's left), and the translation of the
+/// condyles (metres).
 using JawPose = Eigen::Matrix<double, 5, 1>;  // open, swing, tx, ty, tz
 
 /// The joint: its centre is midway between the condyles, its opening axis joins them. In the head frame (+x to the

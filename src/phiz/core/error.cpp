@@ -13,7 +13,9 @@ std::string sentence(std::string_view what, std::string_view mend) {
 
 }  // namespace
 
-void fail(std::string_view what, std::string_view mend) { throw Error(ErrorKind::failure, sentence(what, mend)); }
+void fail(std::string_view what, std::string_view mend) {
+  throw Error(ErrorKind::failure, sentence(what, mend));
+}
 
 void reject(std::string_view where, std::string_view what, std::string_view mend) {
   throw Error(ErrorKind::bad_input, std::string(where) + ": " + sentence(what, mend));
@@ -21,9 +23,12 @@ void reject(std::string_view where, std::string_view what, std::string_view mend
 
 int exit_code(ErrorKind kind) {
   switch (kind) {
-    case ErrorKind::failure: return 1;
-    case ErrorKind::usage: return 2;
-    case ErrorKind::bad_input: return 3;
+    case ErrorKind::failure:
+      return 1;
+    case ErrorKind::usage:
+      return 2;
+    case ErrorKind::bad_input:
+      return 3;
   }
   return 1;
 }

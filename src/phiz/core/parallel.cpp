@@ -26,10 +26,9 @@ double parallel_sum(std::ptrdiff_t count, std::ptrdiff_t grain,
                     const std::function<double(std::ptrdiff_t, std::ptrdiff_t)>& chunk) {
   grain = std::max<std::ptrdiff_t>(grain, 1);
   std::vector<double> partial(static_cast<std::size_t>(std::max<std::ptrdiff_t>((count + grain - 1) / grain, 0)), 0.0);
-  parallel_chunks(count, grain,
-                  [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-                    partial[static_cast<std::size_t>(begin / grain)] = chunk(begin, end);
-                  });
+  parallel_chunks(count, grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    partial[static_cast<std::size_t>(begin / grain)] = chunk(begin, end);
+  });
   double sum = 0;
   for (const double p : partial) sum += p;
   return sum;
@@ -40,7 +39,9 @@ ThreadLimit::ThreadLimit(int count) : control_(nullptr) {
     control_ = new tbb::global_control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count));
 }
 
-ThreadLimit::~ThreadLimit() { delete static_cast<tbb::global_control*>(control_); }
+ThreadLimit::~ThreadLimit() {
+  delete static_cast<tbb::global_control*>(control_);
+}
 
 int thread_count() {
   return static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));

@@ -21,7 +21,8 @@ void parallel_for(std::ptrdiff_t count, Body&& body, std::ptrdiff_t grain = 256)
   });
 }
 
-/// Sum of chunk(begin, end) over the chunks of parallel_chunks, added in chunk order: the same bits for any thread count.
+/// Sum of chunk(begin, end) over the chunks of parallel_chunks, added in chunk order: the same bits for any thread
+/// count.
 double parallel_sum(std::ptrdiff_t count, std::ptrdiff_t grain,
                     const std::function<double(std::ptrdiff_t begin, std::ptrdiff_t end)>& chunk);
 

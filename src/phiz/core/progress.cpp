@@ -21,16 +21,22 @@ void on_signal(int signal_number) {
   std::signal(signal_number, SIG_DFL);
 }
 
-bool is_terminal() { return ::isatty(STDERR_FILENO) != 0; }
+bool is_terminal() {
+  return ::isatty(STDERR_FILENO) != 0;
+}
 
 }  // namespace
 
 Progress::Progress(std::string task, std::ptrdiff_t total)
     : task_(std::move(task)), total_(total), start_(std::chrono::steady_clock::now()), drawn_(start_) {}
 
-Progress::~Progress() { draw(true); }
+Progress::~Progress() {
+  draw(true);
+}
 
-void Progress::set_quiet(bool quiet) { quiet_flag = quiet; }
+void Progress::set_quiet(bool quiet) {
+  quiet_flag = quiet;
+}
 
 void Progress::advance(std::ptrdiff_t steps) {
   done_ += steps;
@@ -64,6 +70,8 @@ void catch_interrupts() {
   std::signal(SIGTERM, on_signal);
 }
 
-bool interrupted() { return interrupt_flag != 0; }
+bool interrupted() {
+  return interrupt_flag != 0;
+}
 
 }  // namespace phiz

@@ -26,7 +26,9 @@ double Random::uniform() {
   return static_cast<double>((high << 26U) | low) / 9007199254740992.0;
 }
 
-double Random::uniform(double low, double high) { return low + (high - low) * uniform(); }
+double Random::uniform(double low, double high) {
+  return low + (high - low) * uniform();
+}
 
 double Random::normal() {
   const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));

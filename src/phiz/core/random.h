@@ -11,10 +11,10 @@ class Random {
  public:
   explicit Random(std::uint64_t seed = 0, std::uint64_t stream = 0);
   std::uint32_t bits();
-  double uniform();                             ///< in [0, 1)
-  double uniform(double low, double high);      ///< in [low, high)
-  double normal();                              ///< mean 0, standard deviation 1 (Box-Muller)
-  std::uint32_t below(std::uint32_t limit);     ///< in [0, limit), unbiased; limit > 0
+  double uniform();                          ///< in [0, 1)
+  double uniform(double low, double high);   ///< in [low, high)
+  double normal();                           ///< mean 0, standard deviation 1 (Box-Muller)
+  std::uint32_t below(std::uint32_t limit);  ///< in [0, limit), unbiased; limit > 0
 
  private:
   std::uint64_t state_;
