@@ -9,12 +9,12 @@
 
 namespace phiz {
 
-/// One volumetric blendshape: the polar parts of M = I + V per flesh tet, M = exp(log_rotation) * (I + stretch). Only the
-/// tets that the shape moves are kept.
+/// One volumetric blendshape: the polar parts of M = I + V per flesh tet, M = exp(log_rotation) * (I + stretch). Only
+/// the tets that the shape moves are kept.
 struct VolumetricShape {
   std::string name;
   JawPose jaw = JawPose::Zero();
-  VectorXi tets;                                             ///< rows of HeadTemplate::volume.T
+  VectorXi tets;                                                          ///< rows of HeadTemplate::volume.T
   Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> log_rotation;  ///< rotation vector, radians
   Eigen::Matrix<float, Eigen::Dynamic, 6, Eigen::RowMajor> stretch;       ///< S - I: xx, yy, zz, xy, xz, yz
 };

@@ -20,12 +20,13 @@ struct Performance {
   double frame_rate = 60;                ///< nominal frames per second
 };
 
-/// Rotation of yaw (about +y), pitch (about +x), roll (about +z), applied as R_y R_x R_z, in the head frame. Positive yaw turns to
-/// the person's left, positive pitch looks down, positive roll tips the head to the person's right (right-handed rotations).
+/// Rotation of yaw (about +y), pitch (about +x), roll (about +z), applied as R_y R_x R_z, in the head frame. Positive
+/// yaw turns to the person's left, positive pitch looks down, positive roll tips the head to the person's right
+/// (right-handed rotations).
 Matrix3d rotation_from_angles(const Vector3d& yaw_pitch_roll);
 
-/// Throws phiz::Error(bad_input) when counts disagree, a value is not finite, time does not ascend, or weights or angles are
-/// of a scale that suggests another unit (percent, degrees).
+/// Throws phiz::Error(bad_input) when counts disagree, a value is not finite, time does not ascend, or weights or
+/// angles are of a scale that suggests another unit (percent, degrees).
 void validate(const Performance& performance, const std::string& where);
 
 }  // namespace phiz
