@@ -17,6 +17,9 @@ struct VolumetricShape {
   VectorXi tets;                                                          ///< rows of HeadTemplate::volume.T
   Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> log_rotation;  ///< rotation vector, radians
   Eigen::Matrix<float, Eigen::Dynamic, 6, Eigen::RowMajor> stretch;       ///< S - I: xx, yy, zz, xy, xz, yz
+  /// Displacement of every vertex of HeadTemplate::volume in the shape's own solution, metres; the predictor of the
+  /// animation solver. May be empty.
+  Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> displacement;
 };
 
 struct FaceModel {

@@ -29,4 +29,7 @@ Matrix3d rotation_from_angles(const Vector3d& yaw_pitch_roll);
 /// angles are of a scale that suggests another unit (percent, degrees).
 void validate(const Performance& performance, const std::string& where);
 
+/// The performance at another frame rate: weights linear in time, angles along the shorter arc. frame_rate > 0.
+Performance resample(const Performance& performance, double frame_rate);
+
 }  // namespace phiz
