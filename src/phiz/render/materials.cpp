@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "phiz/render/materials.h"
+
+namespace phiz {
+
+Material clay_material() {
+  Material m;
+  m.albedo = {0.50, 0.465, 0.43};
+  m.roughness = 0.48;
+  m.specular = 0.035;
+  return m;
+}
+
+Material skin_material() {
+  Material m;
+  m.albedo = {0.64, 0.395, 0.30};
+  m.roughness = 0.46;
+  m.specular = 0.030;
+  m.scatter = {0.42, 0.16, 0.09};
+  m.grain = 1;
+  return m;
+}
+
+Material eye_material() {
+  Material m;
+  m.albedo = {0.72, 0.70, 0.68};
+  m.roughness = 0.06;
+  m.specular = 0.04;
+  m.scatter = {0.12, 0.08, 0.07};
+  return m;
+}
+
+Material enamel_material() {
+  Material m;
+  m.albedo = {0.74, 0.69, 0.58};
+  m.roughness = 0.20;
+  m.specular = 0.05;
+  m.scatter = {0.25, 0.22, 0.18};
+  return m;
+}
+
+Material gum_material() {
+  Material m;
+  m.albedo = {0.50, 0.185, 0.17};
+  m.roughness = 0.28;
+  m.specular = 0.04;
+  m.scatter = {0.35, 0.10, 0.08};
+  return m;
+}
+
+Material bone_material() {
+  Material m;
+  m.albedo = {0.66, 0.59, 0.46};
+  m.roughness = 0.55;
+  m.specular = 0.035;
+  m.scatter = {0.08, 0.06, 0.04};
+  return m;
+}
+
+Material muscle_material() {
+  Material m;
+  m.albedo = {0.42, 0.085, 0.07};
+  m.roughness = 0.42;
+  m.specular = 0.04;
+  m.scatter = {0.2, 0.05, 0.04};
+  return m;
+}
+
+}  // namespace phiz

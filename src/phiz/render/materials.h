@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Ready materials of a head. Linear RGB.
+#pragma once
+
+#include "phiz/render/scene.h"
+
+namespace phiz {
+
+Material clay_material();    ///< warm grey, matt: for judging form
+Material skin_material();    ///< skin with reddish terminator and a soft gloss
+Material eye_material();     ///< wet, sharp glint
+Material enamel_material();  ///< teeth
+Material gum_material();     ///< wet mucosa: gums, tongue
+Material bone_material();    ///< dry bone
+Material muscle_material();  ///< dark red
+
+}  // namespace phiz

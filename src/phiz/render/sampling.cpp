@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "phiz/render/sampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace phiz::detail {
+
+namespace {
+
+float fraction(double x) {
+  return std::min(static_cast<float>(x - std::floor(x)), 0.99999994F);
+}
+
+constexpr double plastic1 = 0.7548776662466927, plastic2 = 0.5698402909980532, golden = 0.6180339887498949;
+
+float hashed(int x, int y, int z) {
+  std::uint32_t h = static_cast<std::uint32_t>(x) * 0x8da6b343U ^ static_cast<std::uint32_t>(y) * 0xd8163841U ^
+                    static_cast<std::uint32_t>(z) * 0xcb1ab31fU;
+  h ^= h >> 15;
+  h *= 0x2c1b3c6dU;
+  h ^= h >> 12;
+  h *= 0x297a2d39U;
+  h ^= h >> 15;
+  return static_cast<float>(h & 0xffffffU) / 16777216.F - 0.5F;
+}
+
+/// Gradient of smooth value noise on the unit lattice.
+Eigen::Vector3f noise_gradient(const Eigen::Vector3f& p) {
+  const int x = static_cast<int>(std::floor(p.x())), y = static_cast<int>(std::floor(p.y())),
+            z = static_cast<int>(std::floor(p.z()));
+  const Eigen::Vector3f f(p.x() - static_cast<float>(x), p.y() - static_cast<float>(y), p.z() - static_cast<float>(z));
+  const Eigen::Vector3f s = (f.array() * f.array() * (3 - 2 * f.array())).matrix();
+  const Eigen::Vector3f ds = (6 * f.array() * (1 - f.array())).matrix();
+  Eigen::Vector3f g = Eigen::Vector3f::Zero();
+  for (int corner = 0; corner < 8; ++corner) {
+    const int dx = corner & 1, dy = (corner >> 1) & 1, dz = corner >> 2;
+    const float value = hashed(x + dx, y + dy, z + dz);
+    const float wx = dx != 0 ? s.x() : 1 - s.x(), wy = dy != 0 ? s.y() : 1 - s.y(), wz = dz != 0 ? s.z() : 1 - s.z();
+    g.x() += value * (dx != 0 ? ds.x() : -ds.x()) * wy * wz;
+    g.y() += value * (dy != 0 ? ds.y() : -ds.y()) * wx * wz;
+    g.z() += value * (dz != 0 ? ds.z() : -ds.z()) * wx * wy;
+  }
+  return g;
+}
+
+}  // namespace
+
+Sample2 plane_sample(int j, int pattern) {
+  // The 16 shifts are themselves points of the lattice, one sixteenth of its spacing each.
+  const double i = j + 0.5 + pattern * 61.0;
+  return {fraction(i * plastic1), fraction(i * plastic2)};
+}
+
+float line_sample(int j, int pattern) {
+  return fraction((j + 0.5) * golden + pattern / 16.0);
+}
+
+int pixel_pattern(int x, int y) {
+  // A magic arrangement: rows, columns and 2 x 2 blocks hold well-spread values.
+  static constexpr int order[16] = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
+  return order[(y & 3) * 4 + (x & 3)];
+}
+
+Sample2 lens_offset(int j, int count) {
+  if (count == 1) return {0, 0};
+  const auto tent = [](double u) {
+    return static_cast<float>(u < 0.5 ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 * (1 - u)));
+  };
+  return {tent((j + 0.5) / count), tent(fraction((j + 0.5) * golden))};
+}
+
+Eigen::Vector3f grain_slope(const Eigen::Vector3f& rest, float strength, float size, float footprint) {
+  Eigen::Vector3f bump = Eigen::Vector3f::Zero();
+  float cell = 0.0034F * size;
+  float weight = 0.16F * strength;
+  for (int octave = 0; octave < 2; ++octave) {
+    const float fade = std::clamp(cell / std::max(footprint, 1e-12F) / 2 - 0.75F, 0.F, 1.F);
+    if (fade > 0) bump += weight * fade * noise_gradient(rest / cell);
+    cell *= 0.46F;
+    weight *= 0.9F;
+  }
+  return bump;
+}
+
+}  // namespace phiz::detail

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Internal: fixed sample patterns and the fine bump of skin. Included by sources only.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace phiz::detail {
+
+struct Sample2 {
+  float x = 0, y = 0;  // in [0, 1)
+};
+
+/// Point `j` of the plastic-number lattice (Roberts 2018), shifted by one of 16 patterns whose union is well spread
+/// too.
+Sample2 plane_sample(int j, int pattern);
+/// Point `j` of the golden-ratio sequence, shifted likewise.
+float line_sample(int j, int pattern);
+/// The pattern of a pixel: each of the 16 once in any 4 x 4 block.
+int pixel_pattern(int x, int y);
+
+/// Offset in pixels of lens sample `j` of `count`, distributed as a tent of radius 1 about the pixel's centre.
+Sample2 lens_offset(int j, int count);
+
+/// Slope of a fine bump at a rest position; fades out when a pixel (`footprint`) is coarser than the bump.
+Eigen::Vector3f grain_slope(const Eigen::Vector3f& rest, float strength, float size, float footprint);
+
+}  // namespace phiz::detail
