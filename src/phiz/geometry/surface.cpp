@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "phiz/geometry/surface.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "phiz/geometry/topology.h"
+
+namespace phiz {
+
+MatrixX3d triangle_area_normals(const MatrixX3d& V, const MatrixX3i& F) {
+  MatrixX3d N(F.rows(), 3);
+  for (Eigen::Index f = 0; f < F.rows(); ++f) {
+    const Vector3d a = V.row(F(f, 0)), b = V.row(F(f, 1)), c = V.row(F(f, 2));
+    N.row(f) = (b - a).cross(c - a);
+  }
+  return N;
+}
+
+MatrixX3d triangle_normals(const MatrixX3d& V, const MatrixX3i& F) {
+  MatrixX3d N = triangle_area_normals(V, F);
+  for (Eigen::Index f = 0; f < N.rows(); ++f) {
+    const double length = N.row(f).norm();
+    if (length > 0) N.row(f) /= length;
+  }
+  return N;
+}
+
+VectorXd triangle_areas(const MatrixX3d& V, const MatrixX3i& F) {
+  return 0.5 * triangle_area_normals(V, F).rowwise().norm();
+}
+
+MatrixX3d vertex_normals(const MatrixX3d& V, const MatrixX3i& F) {
+  const MatrixX3d face_normals = triangle_normals(V, F);
+  MatrixX3d N = MatrixX3d::Zero(V.rows(), 3);
+  for (Eigen::Index f = 0; f < F.rows(); ++f)
+    for (int k = 0; k < 3; ++k) {
+      const Vector3d e1 = V.row(F(f, (k + 1) % 3)) - V.row(F(f, k));
+      const Vector3d e2 = V.row(F(f, (k + 2) % 3)) - V.row(F(f, k));
+      N.row(F(f, k)) += std::atan2(e1.cross(e2).norm(), e1.dot(e2)) * face_normals.row(f);
+    }
+  for (Eigen::Index v = 0; v < N.rows(); ++v) {
+    const double length = N.row(v).norm();
+    if (length > 0) N.row(v) /= length;
+  }
+  return N;
+}
+
+double signed_volume(const MatrixX3d& V, const MatrixX3i& F) {
+  if (F.rows() == 0) return 0;
+  const Vector3d origin = V.row(F(0, 0));  // near the surface, to lose no digits
+  double volume = 0;
+  for (Eigen::Index f = 0; f < F.rows(); ++f) {
+    const Vector3d a = V.row(F(f, 0)).transpose() - origin, b = V.row(F(f, 1)).transpose() - origin,
+                   c = V.row(F(f, 2)).transpose() - origin;
+    volume += a.dot(b.cross(c)) / 6;
+  }
+  return volume;
+}
+
+Vector3d volume_centroid(const MatrixX3d& V, const MatrixX3i& F) {
+  if (F.rows() == 0) return Vector3d::Zero();
+  const Vector3d origin = V.row(F(0, 0));
+  Vector3d moment = Vector3d::Zero();
+  double volume = 0;
+  for (Eigen::Index f = 0; f < F.rows(); ++f) {
+    const Vector3d a = V.row(F(f, 0)).transpose() - origin, b = V.row(F(f, 1)).transpose() - origin,
+                   c = V.row(F(f, 2)).transpose() - origin;
+    const double share = a.dot(b.cross(c)) / 6;
+    volume += share;
+    moment += share / 4 * (a + b + c);
+  }
+  return volume != 0 ? Vector3d(origin + moment / volume) : origin;
+}
+
+double mean_edge_length(const MatrixX3d& V, const MatrixX3i& F) {
+  const MatrixX2i E = edges(F);
+  if (E.rows() == 0) return 0;
+  double sum = 0;
+  for (Eigen::Index e = 0; e < E.rows(); ++e) sum += (V.row(E(e, 0)) - V.row(E(e, 1))).norm();
+  return sum / static_cast<double>(E.rows());
+}
+
+}  // namespace phiz
