@@ -11,9 +11,10 @@ double minimum_jerk(double u) {
 }
 
 double Gesture::at(double time) const {
-  const double up = minimum_jerk((time - start) / rise);
+  const double up = minimum_jerk((time - start) / rise) *
+                    (1 - relaxation * minimum_jerk((time - start - 0.7 * rise) / (rise + hold)));
   const double down = minimum_jerk((time - start - rise - hold) / fall);
-  return up - down;
+  return up * (1 - down);
 }
 
 double Track::at(double time) const {

@@ -10,9 +10,10 @@ namespace phiz::authoring {
 /// Minimum-jerk step (Flash and Hogan 1985): 0 for u <= 0, 1 for u >= 1, with zero speed and acceleration at both ends.
 double minimum_jerk(double u);
 
-/// A gesture that rises to 1, stays and falls back to 0. Seconds.
+/// A gesture that rises to 1, relaxes a little while it is held (few muscles hold still), and falls back to 0. Seconds.
 struct Gesture {
   double start = 0, rise = 0.25, hold = 0.3, fall = 0.35;
+  double relaxation = 0.12;  ///< what is lost by the end of the hold
   double at(double time) const;
 };
 

@@ -26,7 +26,7 @@ std::vector<Sound> spoken() {
 
 /// A blink: lids fall fast, stay shut for a frame or two, rise slowly.
 Gesture blink(double start) {
-  return {start, 0.09, 0.035, 0.19};
+  return {start, 0.09, 0.035, 0.19, 0};
 }
 
 void mimic(MouthShape& face, double t) {
@@ -38,7 +38,7 @@ void mimic(MouthShape& face, double t) {
 
   const double lids = std::max({blink(0.12).at(t), blink(1.30).at(t), blink(3.02).at(t), blink(4.62).at(t),
                                 blink(6.10).at(t), blink(7.30).at(t), blink(9.62).at(t)});
-  const double wink = Gesture{8.75, 0.13, 0.22, 0.22}.at(t);
+  const double wink = Gesture{8.75, 0.13, 0.22, 0.22, 0}.at(t);
   both("eyeBlink", std::max(lids, wink), lids);
   both("cheekSquint", 0.65 * wink, 0.1 * wink);
   both("mouthSmile", 0.45 * wink, 0.12 * wink);
