@@ -179,7 +179,7 @@ Camera frame_view(View view, const MatrixX3d& points, const FacePoints& face, in
       return look_at(middle, towards, 0.185 * unit, width, height);
     }
     case View::mouth:
-      return look_at(face.mouth, towards, 0.085 * unit, width, height);
+      return look_at(face.mouth, towards, 0.075 * unit, width, height);
     case View::left_eye:
       return look_at(face.left_eye, towards, 0.060 * unit, width, height);
     case View::right_eye:

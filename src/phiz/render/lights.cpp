@@ -15,8 +15,8 @@ std::vector<AreaLight> studio_lights(const Camera& camera, const Eigen::AlignedB
     return AreaLight{centre + axes * direction * distance * size, radius * size, irradiance};
   };
   return {
-      light(-42, 38, 3.0, 0.75, Vector3d(2.05, 1.98, 1.88)),  // key
-      light(58, 8, 3.0, 1.00, Vector3d(0.40, 0.43, 0.48)),    // fill
+      light(-44, 40, 3.0, 0.60, Vector3d(2.60, 2.50, 2.36)),  // key
+      light(58, 8, 3.0, 1.00, Vector3d(0.30, 0.33, 0.38)),    // fill
       light(150, 35, 3.0, 0.70, Vector3d(1.15, 1.20, 1.30)),  // rim
   };
 }

@@ -5,7 +5,7 @@ namespace phiz {
 
 Material clay_material() {
   Material m;
-  m.albedo = {0.50, 0.465, 0.43};
+  m.albedo = {0.46, 0.43, 0.40};
   m.roughness = 0.48;
   m.specular = 0.035;
   return m;
@@ -13,7 +13,7 @@ Material clay_material() {
 
 Material skin_material() {
   Material m;
-  m.albedo = {0.64, 0.395, 0.30};
+  m.albedo = {0.60, 0.375, 0.285};
   m.roughness = 0.46;
   m.specular = 0.030;
   m.scatter = {0.42, 0.16, 0.09};

@@ -148,7 +148,7 @@ float srgb(float linear) {
 
 std::uint8_t quantise(float value, int x, int y, int channel) {
   // Ordered dither of less than one step keeps the backdrop free of bands.
-  const float dither = (static_cast<float>(pixel_pattern(x + channel, y + 2 * channel)) + 0.5F) / 16 - 0.5F;
+  const float dither = (static_cast<float>(pixel_pattern(x + channel, y + 2 * channel) & 15) + 0.5F) / 16 - 0.5F;
   return static_cast<std::uint8_t>(std::clamp(value * 255 + 0.5F + 0.9F * dither, 0.F, 255.F));
 }
 

@@ -47,20 +47,23 @@ Eigen::Vector3f noise_gradient(const Eigen::Vector3f& p) {
 
 }  // namespace
 
-Sample2 plane_sample(int j, int pattern) {
-  // The 16 shifts are themselves points of the lattice, one sixteenth of its spacing each.
-  const double i = j + 0.5 + pattern * 61.0;
-  return {fraction(i * plastic1), fraction(i * plastic2)};
+Sample2 plane_sample(int j, int count, int pattern) {
+  // 16 neighbours deal the first 16 * count points out among them; each block of 16 shifts the set within its spacing.
+  const double i = 16.0 * j + (pattern & 15) + 0.5;
+  const int block = pattern >> 4;
+  const double spacing = 0.25 / std::sqrt(static_cast<double>(count));
+  return {fraction(i * plastic1 + spacing * ((block & 3) - 1.5) / 4),
+          fraction(i * plastic2 + spacing * ((block >> 2) - 1.5) / 4)};
 }
 
-float line_sample(int j, int pattern) {
-  return fraction((j + 0.5) * golden + pattern / 16.0);
+float line_sample(int j, int count, int pattern) {
+  return fraction((16.0 * j + (pattern & 15) + 0.5) * golden + (pattern >> 4) / (256.0 * count));
 }
 
 int pixel_pattern(int x, int y) {
   // A magic arrangement: rows, columns and 2 x 2 blocks hold well-spread values.
   static constexpr int order[16] = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
-  return order[(y & 3) * 4 + (x & 3)];
+  return order[(y & 3) * 4 + (x & 3)] + 16 * order[(y >> 2 & 3) * 4 + (x >> 2 & 3)];
 }
 
 Sample2 lens_offset(int j, int count) {
@@ -73,8 +76,8 @@ Sample2 lens_offset(int j, int count) {
 
 Eigen::Vector3f grain_slope(const Eigen::Vector3f& rest, float strength, float size, float footprint) {
   Eigen::Vector3f bump = Eigen::Vector3f::Zero();
-  float cell = 0.0034F * size;
-  float weight = 0.16F * strength;
+  float cell = 0.0022F * size;
+  float weight = 0.055F * strength;
   for (int octave = 0; octave < 2; ++octave) {
     const float fade = std::clamp(cell / std::max(footprint, 1e-12F) / 2 - 0.75F, 0.F, 1.F);
     if (fade > 0) bump += weight * fade * noise_gradient(rest / cell);

@@ -10,12 +10,12 @@ struct Sample2 {
   float x = 0, y = 0;  // in [0, 1)
 };
 
-/// Point `j` of the plastic-number lattice (Roberts 2018), shifted by one of 16 patterns whose union is well spread
-/// too.
-Sample2 plane_sample(int j, int pattern);
-/// Point `j` of the golden-ratio sequence, shifted likewise.
-float line_sample(int j, int pattern);
-/// The pattern of a pixel: each of the 16 once in any 4 x 4 block.
+/// Point `j` of `count` of one of 256 patterns over the square. The points of patterns 16 b to 16 b + 15 together are
+/// 16 * count points of the plastic-number lattice (Roberts 2018), for any block b.
+Sample2 plane_sample(int j, int count, int pattern);
+/// Likewise on the line, golden-ratio sequence.
+float line_sample(int j, int count, int pattern);
+/// The pattern of a pixel, repeating every 16 pixels; its value modulo 16 takes each value once in any 4 x 4 block.
 int pixel_pattern(int x, int y);
 
 /// Offset in pixels of lens sample `j` of `count`, distributed as a tent of radius 1 about the pixel's centre.

@@ -52,8 +52,8 @@ struct AreaLight {
 
 /// Light from all around (a vertical gradient) and the picture's backdrop.
 struct Surroundings {
-  Vector3d sky{0.34, 0.36, 0.40};              ///< ambient radiance from above
-  Vector3d ground{0.13, 0.12, 0.115};          ///< ambient radiance from below
+  Vector3d sky{0.30, 0.32, 0.36};              ///< ambient radiance from above
+  Vector3d ground{0.085, 0.080, 0.076};        ///< ambient radiance from below
   Vector3d backdrop_top{0.205, 0.215, 0.235};  ///< backdrop behind the surfaces, display-linear RGB
   Vector3d backdrop_bottom{0.075, 0.08, 0.09};
 };

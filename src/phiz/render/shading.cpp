@@ -77,13 +77,13 @@ Visibility trace_visibility(const ShadingContext& c, const SurfacePoint& p, int 
     const Vector3f t1 = p.normal.unitOrthogonal(), t2 = p.normal.cross(t1);
     int open = 0;
     for (int j = 0; j < c.ambient_samples; ++j) {
-      const Sample2 s = plane_sample(j, pattern);
+      const Sample2 s = plane_sample(j, c.ambient_samples, pattern);
       const float r = std::sqrt(s.x), phi = 2 * pi * s.y;
       Vector3f d = t1 * (r * std::cos(phi)) + t2 * (r * std::sin(phi)) + p.normal * std::sqrt(1 - s.x);
       const float below = d.dot(p.face_normal);
       if (below < 0) d -= 2 * below * p.face_normal;
       // Rays of random length make occlusion fade out with distance.
-      const float length = c.ambient_reach * std::sqrt(line_sample(j, pattern));
+      const float length = c.ambient_reach * std::sqrt(line_sample(j, c.ambient_samples, pattern));
       if (!c.rays->occluded(origin, d, step, std::max(length, 2 * step))) ++open;
     }
     seen.ambient = static_cast<float>(open) / static_cast<float>(c.ambient_samples);
@@ -102,7 +102,7 @@ Visibility trace_visibility(const ShadingContext& c, const SurfacePoint& p, int 
     if (p.normal.dot(centre) < -(wrap + 0.02F) * centre.norm() - light.radius) continue;
     int open = 0;
     for (int j = 0; j < c.light_samples; ++j) {
-      const Sample2 s = plane_sample(j + 7 * static_cast<int>(i + 1), pattern);
+      const Sample2 s = plane_sample(j, c.light_samples, pattern);
       const float r = light.radius * std::sqrt(s.x), phi = 2 * pi * s.y;
       const Vector3f to = centre + light.axis_u * (r * std::cos(phi)) + light.axis_v * (r * std::sin(phi));
       const float distance = to.norm();

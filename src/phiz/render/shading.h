@@ -31,7 +31,7 @@ struct ShadingContext {
   float ambient_reach = 0;  // world units
 };
 
-/// Traces visibility at a point. `pattern`, 0 to 15, selects the sample pattern.
+/// Traces visibility at a point. `pattern`, 0 to 255, selects the sample pattern.
 Visibility trace_visibility(const ShadingContext& context, const SurfacePoint& point, int pattern);
 
 /// Radiance towards the viewer (before the tone curve), linear RGB. `direction`: unit, from the viewer.
