@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The ring of the lips as a row of cross-sections that the orbicularis oris moves, rolls and presses, and the surface
+/// between the lips that neither may cross.
+#pragma once
+
+#include <vector>
+
+#include "phiz/anatomy/expression_flesh.h"
+#include "phiz/anatomy/expression_recipes.h"
+#include "phiz/anatomy/head_template.h"
+
+namespace phiz {
+
+class LipControl {
+ public:
+  /// Needs the skin regions loop:upperLipLine and loop:lowerLipLine (ordered from corner to corner) and upperLip,
+  /// lowerLip. Throws phiz::Error naming the region that is missing.
+  explicit LipControl(const HeadTemplate& head);
+
+  /// Handles that move the lips as the recipe says; the lower lip also goes with the jaw. `left_only` fades the
+  /// motion out across the midline. None where the recipe does not hold the lips.
+  std::vector<Handle> handles(const ExpressionRecipe& recipe, const Eigen::Isometry3d& jaw) const;
+
+ private:
+  /// One skin vertex near the mouth.
+  struct LipVertex {
+    int vertex;    ///< row of volume.V
+    double along;  ///< -1 right corner, 0 centre, 1 left corner
+    double share;  ///< how far it belongs to the lip: 1 near the parting line, 0 at 13 mm
+    bool upper;
+    Vector3d rest;
+  };
+  struct Frame {
+    Vector3d middle, along, up, out;
+  };
+  Frame frame_at(double along) const;
+
+  std::vector<LipVertex> vertices_;
+  MatrixX3d line_;  ///< the parting line from the right corner to the left, evenly spaced in `along`
+};
+
+}  // namespace phiz

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "phiz/anatomy/expression_recipes.h"
+
+namespace phiz {
+namespace {
+
+using Part = MusclePull::Part;
+
+std::vector<ExpressionRecipe> eye_recipes() {
+  return {
+      // AU45: the upper lid does most of the way.
+      {.name = "eyeBlinkLeft",
+       .paired = true,
+       .pulls = {{"orbicularisOculi", 0.03, Part::upper, 0.2, 1}, {"orbicularisOculi", 0.03, Part::lower, 0.2, 1}},
+       .lids = {.upper = 0.86, .lower = 0.14}},
+      // The lids follow the gaze.
+      {.name = "eyeLookDownLeft", .paired = true, .lids = {.upper = 0.52, .lower = -0.24, .bulge_up = -30}},
+      {.name = "eyeLookUpLeft",
+       .paired = true,
+       .pulls = {{"frontalis", 0.02}},
+       .lids = {.upper = -0.30, .lower = 0.06, .bulge_up = 28}},
+      {.name = "eyeLookInLeft", .paired = true, .lids = {.sideways = -3.5, .bulge_side = -32}},
+      {.name = "eyeLookOutLeft", .paired = true, .lids = {.sideways = 3.5, .bulge_side = 32}},
+      // AU7: the lower lid rises and straightens.
+      {.name = "eyeSquintLeft",
+       .paired = true,
+       .pulls = {{"orbicularisOculi", 0.10, Part::lower, 0, 0.8}, {"orbicularisOculi", 0.04, Part::upper, 0, 1}},
+       .lids = {.upper = 0.14, .lower = 0.34}},
+      // AU5
+      {.name = "eyeWideLeft", .paired = true, .pulls = {{"frontalis", 0.02}}, .lids = {.upper = -0.36, .lower = -0.10}},
+      // AU6: the outer ring gathers the cheek under the eye.
+      {.name = "cheekSquintLeft",
+       .paired = true,
+       .pulls = {{"orbicularisOculi", 0.22, Part::lower, 0.5, 1},
+                 {"orbicularisOculi", 0.05, Part::upper, 0.5, 1},
+                 {"zygomaticusMinor", 0.08},
+                 {"levatorLabiiSuperioris", 0.06}},
+       .lids = {.upper = 0.04, .lower = 0.20}},
+  };
+}
+
+std::vector<ExpressionRecipe> brow_and_nose_recipes() {
+  return {
+      // AU4
+      {.name = "browDownLeft",
+       .paired = true,
+       .pulls = {{"corrugator", 0.22},
+                 {"procerus", 0.22, Part::left},
+                 {"orbicularisOculi", 0.14, Part::upper, 0.5, 1}}},
+      // AU1: medial frontalis of both sides, with the corrugators' slant.
+      {.name = "browInnerUp",
+       .pulls = {{"frontalisLeft", 0.15, Part::whole, 0, 0.45},
+                 {"frontalisRight", 0.15, Part::whole, 0, 0.45},
+                 {"corrugatorLeft", 0.06},
+                 {"corrugatorRight", 0.06}}},
+      // AU2
+      {.name = "browOuterUpLeft", .paired = true, .pulls = {{"frontalis", 0.16, Part::whole, 0.5, 1}}},
+      // AU9
+      {.name = "noseSneerLeft",
+       .paired = true,
+       .pulls = {{"levatorLabiiSuperiorisAlaequeNasi", 0.20},
+                 {"nasalis", 0.12},
+                 {"levatorLabiiSuperioris", 0.10},
+                 {"procerus", 0.12, Part::left},
+                 {"corrugator", 0.05}},
+       .lids = {.lower = 0.08}},
+  };
+}
+
+std::vector<ExpressionRecipe> jaw_recipes() {
+  return {
+      {.name = "jawForward", .jaw_down = 1.5, .jaw_forward = 6},
+      {.name = "jawLeft", .paired = true, .swing = 0.07, .jaw_down = 0.8, .jaw_side = 3.5},
+      // AU27
+      {.name = "jawOpen", .open = 0.42, .jaw_down = 1.0, .jaw_forward = 4},
+      // The lips stay closed while the jaw opens; made as the difference to jawOpen.
+      {.name = "mouthClose",
+       .pulls = {{"orbicularisOris", 0.05}},
+       .open = 0.42,
+       .jaw_down = 1.0,
+       .jaw_forward = 4,
+       .sealed = true},
+      {.name = "tongueOut",
+       .lower_lip = {.centre = {.up = -2, .out = 1.5, .roll = 8}, .middle = {.up = -1.5, .out = 1}, .hold = 1},
+       .open = 0.16,
+       .jaw_down = 0.5,
+       .jaw_forward = 1.5},
+  };
+}
+
+std::vector<ExpressionRecipe> lip_ring_recipes() {
+  return {
+      // AU22: open, round, turned outward.
+      {.name = "mouthFunnel",
+       .pulls = {{"orbicularisOris", 0.10}},
+       .upper_lip = {{.up = 3.5, .out = 6.5, .roll = 14},
+                     {.up = 2.8, .out = 6, .wide = -3.5, .roll = 12},
+                     {.out = 3.5, .wide = -7},
+                     4},
+       .lower_lip = {{.up = -4.5, .out = 7, .roll = 16},
+                     {.up = -3.6, .out = 6.3, .wide = -3.5, .roll = 14},
+                     {.out = 3.5, .wide = -7},
+                     4}},
+      // AU18
+      {.name = "mouthPucker",
+       .pulls = {{"orbicularisOris", 0.16}},
+       .upper_lip = {{.up = 0.8, .out = 8, .roll = 8},
+                     {.up = 0.8, .out = 7, .wide = -5, .roll = 8},
+                     {.out = 4.5, .wide = -10},
+                     4},
+       .lower_lip = {{.up = -0.6, .out = 8, .roll = 8},
+                     {.up = -0.6, .out = 7, .wide = -5, .roll = 8},
+                     {.out = 4.5, .wide = -10},
+                     4}},
+      // AU28, one lip at a time
+      {.name = "mouthRollLower",
+       .pulls = {{"mentalisLeft", 0.04}, {"mentalisRight", 0.04}},
+       .lower_lip = {{.up = 1.5, .out = -2.5, .roll = -50},
+                     {.up = 1.3, .out = -2.0, .roll = -42},
+                     {.out = -0.5, .roll = -6},
+                     5}},
+      {.name = "mouthRollUpper",
+       .upper_lip = {{.up = -1.5, .out = -2.5, .roll = -50},
+                     {.up = -1.3, .out = -2.0, .roll = -42},
+                     {.out = -0.5, .roll = -6},
+                     5}},
+      // AU17
+      {.name = "mouthShrugLower",
+       .pulls = {{"mentalisLeft", 0.30}, {"mentalisRight", 0.30}},
+       .upper_lip = {{.up = 3, .out = 1}, {.up = 2.2, .out = 0.7}, {.up = -0.5}, 1.5},
+       .lower_lip = {{.up = 3.5, .out = 2.5, .roll = 14}, {.up = 2.4, .out = 1.8, .roll = 10}, {.up = -0.5}, 2}},
+      {.name = "mouthShrugUpper",
+       .pulls = {{"levatorLabiiSuperiorisAlaequeNasiLeft", 0.03}, {"levatorLabiiSuperiorisAlaequeNasiRight", 0.03}},
+       .upper_lip = {{.up = 3.2, .out = 3, .roll = 14}, {.up = 2.4, .out = 2.3, .roll = 10}, {}, 2.5},
+       .lower_lip = {{.up = 1.2, .out = 0.6}, {.up = 0.9, .out = 0.4}, {}, 1}},
+      // AU24, one side
+      {.name = "mouthPressLeft",
+       .paired = true,
+       .pulls = {{"buccinator", 0.03}},
+       .upper_lip = {{.up = -0.9, .out = -0.8, .roll = -16}, {.up = -0.9, .out = -0.8, .roll = -16}, {.out = -0.8}, 4},
+       .lower_lip = {{.up = 1.0, .out = -0.8, .roll = -16}, {.up = 1.0, .out = -0.8, .roll = -16}, {.out = -0.8}, 4}},
+      {.name = "cheekPuff",
+       .upper_lip = {{.out = 1.2}, {.out = 1.2}, {.out = 0.5}, 1},
+       .lower_lip = {{.out = 1.2}, {.out = 1.2}, {.out = 0.5}, 1},
+       .puff = 10},
+  };
+}
+
+std::vector<ExpressionRecipe> mouth_pull_recipes() {
+  return {
+      // AU12
+      {.name = "mouthSmileLeft",
+       .paired = true,
+       .pulls = {{"zygomaticusMajor", 0.24},
+                 {"zygomaticusMinor", 0.12},
+                 {"levatorAnguliOris", 0.12},
+                 {"orbicularisOculi", 0.06, Part::lower, 0.5, 1}},
+       .lids = {.lower = 0.08}},
+      // AU15
+      {.name = "mouthFrownLeft",
+       .paired = true,
+       .pulls = {{"depressorAnguliOris", 0.30}, {"platysma", 0.02}, {"mentalis", 0.05}}},
+      // AU14
+      {.name = "mouthDimpleLeft", .paired = true, .pulls = {{"buccinator", 0.18}, {"risorius", 0.08}}},
+      // AU20
+      {.name = "mouthStretchLeft",
+       .paired = true,
+       .pulls = {{"risorius", 0.30}, {"platysma", 0.06, Part::whole, 0.4, 1}, {"depressorAnguliOris", 0.06}}},
+      // AU16
+      {.name = "mouthLowerDownLeft",
+       .paired = true,
+       .pulls = {{"depressorLabiiInferioris", 0.32}, {"platysma", 0.02}},
+       .lower_lip = {{.up = -3.5, .out = 0.5}, {.up = -5, .out = 0.5}, {.up = -0.5}, 0.8}},
+      // AU10
+      {.name = "mouthUpperUpLeft",
+       .paired = true,
+       .pulls = {{"levatorLabiiSuperioris", 0.22}, {"zygomaticusMinor", 0.05}},
+       .upper_lip = {{.up = 3.5, .out = 0.5}, {.up = 5.5, .out = 0.5}, {.up = 0.5}, 0.8}},
+      // The whole mouth drawn aside: the muscles of one cheek pull, those of the other yield.
+      {.name = "mouthLeft",
+       .paired = true,
+       .pulls = {{"zygomaticusMajor", 0.06}, {"risorius", 0.18}, {"buccinator", 0.14}}},
+  };
+}
+
+}  // namespace
+
+std::span<const ExpressionRecipe> expression_recipes() {
+  static const std::vector<ExpressionRecipe> recipes = [] {
+    std::vector<ExpressionRecipe> all;
+    for (const auto& group :
+         {eye_recipes(), brow_and_nose_recipes(), jaw_recipes(), lip_ring_recipes(), mouth_pull_recipes()})
+      all.insert(all.end(), group.begin(), group.end());
+    return all;
+  }();
+  return recipes;
+}
+
+JawPose jaw_pose(const ExpressionRecipe& recipe, const JawJoint& joint) {
+  JawPose pose;
+  pose << recipe.open, recipe.swing, recipe.jaw_side * 1e-3, -recipe.jaw_down * 1e-3, recipe.jaw_forward * 1e-3;
+  return pose.cwiseMax(joint.lower).cwiseMin(joint.upper);
+}
+
+std::string other_side(std::string_view name) {
+  constexpr std::string_view left = "Left", right = "Right";
+  if (name.ends_with(left)) return std::string(name.substr(0, name.size() - left.size())) + "Right";
+  if (name.ends_with(right)) return std::string(name.substr(0, name.size() - right.size())) + "Left";
+  return std::string(name);
+}
+
+}  // namespace phiz
