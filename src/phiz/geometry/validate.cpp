@@ -3,6 +3,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 
 #include "phiz/core/error.h"

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+
+#include "phiz/core/random.h"
+#include "phiz/geometry/tetrahedralise.h"
+
+namespace phiz {
+
+namespace {
+
+/// The tets round one vertex, with that vertex replaced on trial.
+class Star {
+ public:
+  Star(const TetMesh& mesh, const std::vector<int>& tets, int centre) : mesh_(mesh), tets_(tets), centre_(centre) {}
+
+  double worst_ratio(const Vector3d& p, double give_up_below) const {
+    double worst = std::numeric_limits<double>::infinity();
+    for (const int t : tets_) {
+      Vector3d corner[4];
+      for (int k = 0; k < 4; ++k) corner[k] = mesh_.T(t, k) == centre_ ? p : Vector3d(mesh_.V.row(mesh_.T(t, k)));
+      worst = std::min(worst, radius_ratio(corner[0], corner[1], corner[2], corner[3]));
+      if (worst < give_up_below) break;
+    }
+    return worst;
+  }
+
+  Vector3d mean_of_neighbours() const {
+    Vector3d sum = Vector3d::Zero();
+    double count = 0;
+    for (const int t : tets_)
+      for (int k = 0; k < 4; ++k)
+        if (mesh_.T(t, k) != centre_) {
+          sum += mesh_.V.row(mesh_.T(t, k)).transpose();
+          count += 1;
+        }
+    return sum / count;
+  }
+
+  double shortest_spoke(const Vector3d& p) const {
+    double squared = std::numeric_limits<double>::infinity();
+    for (const int t : tets_)
+      for (int k = 0; k < 4; ++k)
+        if (mesh_.T(t, k) != centre_)
+          squared = std::min(squared, (mesh_.V.row(mesh_.T(t, k)).transpose() - p).squaredNorm());
+    return std::sqrt(squared);
+  }
+
+ private:
+  const TetMesh& mesh_;
+  const std::vector<int>& tets_;
+  int centre_;
+};
+
+constexpr double good_enough = 0.5;  // stars whose worst tet is this good are left alone
+
+}  // namespace
+
+int smooth_interior(TetMesh& mesh, const std::vector<char>& fixed, int passes) {
+  std::vector<std::vector<int>> tets_of(static_cast<std::size_t>(mesh.V.rows()));
+  for (int t = 0; t < mesh.T.rows(); ++t)
+    for (int k = 0; k < 4; ++k) tets_of[static_cast<std::size_t>(mesh.T(t, k))].push_back(t);
+
+  int moves = 0;
+  for (int pass = 0; pass < passes; ++pass) {
+    int moved = 0;
+    for (int v = 0; v < mesh.V.rows(); ++v) {
+      if (fixed[static_cast<std::size_t>(v)] || tets_of[static_cast<std::size_t>(v)].empty()) continue;
+      const Star star(mesh, tets_of[static_cast<std::size_t>(v)], v);
+      const Vector3d start = mesh.V.row(v);
+      Vector3d best = start;
+      double worst = star.worst_ratio(start, -1);
+      if (worst > good_enough) continue;
+      const double before = worst;
+      const auto attempt = [&](const Vector3d& p) {
+        const double ratio = star.worst_ratio(p, worst);
+        if (!(ratio > worst)) return false;
+        worst = ratio;
+        best = p;
+        return true;
+      };
+      const Vector3d mean = star.mean_of_neighbours();
+      for (const double share : {1.0, 0.5, 0.25}) attempt(start + share * (mean - start));
+      // Random directions with shrinking steps: the objective has kinks where the worst tet changes.
+      Random random(static_cast<std::uint64_t>(v), static_cast<std::uint64_t>(pass));
+      double step = 0.3 * star.shortest_spoke(best);
+      for (int trial = 0; trial < 24; ++trial) {
+        const Vector3d direction(random.normal(), random.normal(), random.normal());
+        const Vector3d base = best;
+        if (!attempt(base + step * direction.normalized()) && !attempt(base - step * direction.normalized()))
+          step *= 0.8;
+      }
+      if (worst > before) {
+        mesh.V.row(v) = best;
+        ++moved;
+      }
+    }
+    moves += moved;
+    if (moved == 0) break;
+  }
+  return moves;
+}
+
+}  // namespace phiz
