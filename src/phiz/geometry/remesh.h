@@ -13,8 +13,8 @@ struct RemeshOptions {
   int iterations = 5;
   double sharp_angle = 180;  ///< edges with a larger angle between their normals are kept, degrees; 180: none
 };
-/// Isotropic remeshing of a manifold surface (Botsch and Kobbelt 2004, CGAL); boundaries stay. Texture coordinates are
-/// dropped.
+/// Isotropic remeshing of a manifold surface (Botsch and Kobbelt 2004, CGAL); boundaries keep their shape. Texture
+/// coordinates are dropped.
 TriangleMesh remesh_isotropic(const TriangleMesh& mesh, const RemeshOptions& options);
 
 /// Fewer triangles by edge collapse (Garland and Heckbert 1997, CGAL); manifold input, texture coordinates are dropped.
@@ -30,6 +30,9 @@ struct PolygoniseOptions {
   double edge_length = 0;    ///< wanted edge of the result, metres, > 0
   bool improve = true;       ///< even out the triangles (isotropic remeshing, then projection back)
   int projection_steps = 6;  ///< Newton steps of each vertex to the zero set
+  /// Bound on |gradient of f| where |f| is large: lets far blocks of the lattice be skipped after one evaluation. 0:
+  /// evaluate everywhere.
+  double lipschitz = 0;
 };
 /// The zero set of f (negative inside, continuous, roughly distance-like; called from several threads) inside of the
 /// box, as a closed manifold outward surface: marching tetrahedra on a body-centred lattice. f must be positive on the
