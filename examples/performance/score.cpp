@@ -17,6 +17,11 @@ constexpr double length = 10.0;  // seconds
 constexpr double degree = std::numbers::pi / 180;
 constexpr double full_gaze = 30 * degree;  // eye angle at which an eyeLook weight is 1
 
+/// To the precision that a recorder keeps; also turns -0 into 0.
+double recorded(double value) {
+  return std::round(value * 1e5) / 1e5 + 0.0;
+}
+
 /// "Hello. I am made of flesh and bone."
 std::vector<Sound> spoken() {
   return sentence({"h", "e",  "l", "o", "u", "_", "a",  "i",  "ae", "m", "m", "e", "i",
@@ -206,10 +211,11 @@ Performance first_light(double frame_rate) {
     look(face, gaze);
     performance.time(f) = t;
     for (Eigen::Index e = 0; e < performance.weights.cols(); ++e)
-      performance.weights(f, e) = std::clamp(face[performance.expressions[static_cast<std::size_t>(e)]], 0.0, 1.0);
-    performance.head.row(f) = head_angles(t);
-    performance.left_eye.row(f) = gaze;
-    performance.right_eye.row(f) = gaze;
+      performance.weights(f, e) =
+          recorded(std::clamp(face[performance.expressions[static_cast<std::size_t>(e)]], 0.0, 1.0));
+    performance.head.row(f) = head_angles(t).unaryExpr(&recorded);
+    performance.left_eye.row(f) = gaze.unaryExpr(&recorded);
+    performance.right_eye.row(f) = gaze.unaryExpr(&recorded);
   }
   return performance;
 }
