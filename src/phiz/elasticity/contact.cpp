@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "phiz/elasticity/contact.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "phiz/core/error.h"
+#include "phiz/core/parallel.h"
+#include "phiz/elasticity/obstacle.h"
+
+namespace phiz {
+
+namespace {
+
+/// A vertex that is checked against one obstacle, and what its last search allows us to skip.
+struct Watch {
+  int vertex = -1;
+  int obstacle = -1;
+  int own_patch = -1;
+  int pair = -1;
+  bool known = false;
+  double clear = 0;   ///< no contact was nearer than this ...
+  Vector3d at;        ///< ... when the vertex was here
+  double travel = 0;  ///< ... and the obstacle had travelled so far
+};
+
+constexpr double search_reach = 5e-3;  ///< beyond the margin; a longer search is seldom of use for the next call
+constexpr double same_side = 0.5;      ///< cosine above which a penetrating vertex faces as its obstacle does
+
+}  // namespace
+
+struct ContactScene::State {
+  Eigen::Index vertex_count = 0;
+  ContactOptions options;
+  std::vector<Obstacle> obstacles;
+  std::vector<Watch> watches;
+  int pairs = 0;
+  int left_out = 0;
+
+  /// The contact of a watch, if it is one: not on the rim of a patch, not pushed through from behind.
+  std::optional<SignedContact> contact(const Watch& watch, const Vector3d& p, double reach) const {
+    std::optional<SignedContact> found = obstacles[static_cast<std::size_t>(watch.obstacle)].closest(p, reach);
+    if (!found || found->on_rim || found->gap < -options.depth_limit) return std::nullopt;
+    if (found->gap < 0 && watch.own_patch >= 0 &&
+        obstacles[static_cast<std::size_t>(watch.own_patch)].normal_at(watch.vertex).dot(found->normal) > same_side)
+      return std::nullopt;
+    return found;
+  }
+};
+
+ContactScene::ContactScene(Eigen::Index vertex_count, const ContactOptions& options)
+    : state_(std::make_unique<State>()) {
+  if (!(options.margin > 0) || !(options.depth_limit > 0))
+    reject("contact options", "margin and depth limit must be positive");
+  state_->vertex_count = vertex_count;
+  state_->options = options;
+}
+
+ContactScene::~ContactScene() = default;
+ContactScene::ContactScene(ContactScene&&) noexcept = default;
+ContactScene& ContactScene::operator=(ContactScene&&) noexcept = default;
+
+int ContactScene::add_patch(const MatrixX3d& rest, const MatrixX3i& triangles) {
+  state_->obstacles.push_back(Obstacle::patch(rest, triangles));
+  return static_cast<int>(state_->obstacles.size()) - 1;
+}
+
+int ContactScene::add_rigid(const TriangleMesh& mesh) {
+  state_->obstacles.push_back(Obstacle::rigid(mesh));
+  return static_cast<int>(state_->obstacles.size()) - 1;
+}
+
+void ContactScene::add_pair(const VectorXi& vertices, int obstacle, int own_patch, const MatrixX3d& rest) {
+  const auto count = static_cast<int>(state_->obstacles.size());
+  if (obstacle < 0 || obstacle >= count || own_patch >= count)
+    reject("contact pair", "names an obstacle that does not exist");
+  for (const int v : vertices) {
+    if (v < 0 || v >= state_->vertex_count) reject("contact pair", "names a vertex that does not exist");
+    if (state_->obstacles[static_cast<std::size_t>(obstacle)].has_vertex(v)) continue;  // where two patches meet
+    Watch watch;
+    watch.vertex = v;
+    watch.obstacle = obstacle;
+    watch.own_patch = own_patch;
+    watch.pair = state_->pairs;
+    const std::optional<SignedContact> now = state_->contact(watch, rest.row(v), state_->options.depth_limit);
+    if (now && now->gap < 0) {
+      ++state_->left_out;
+      continue;
+    }
+    state_->watches.push_back(watch);
+  }
+  ++state_->pairs;
+}
+
+void ContactScene::place(int obstacle, const Eigen::Isometry3d& transform) {
+  state_->obstacles[static_cast<std::size_t>(obstacle)].place(transform);
+}
+
+VectorXi ContactScene::candidates() const {
+  std::vector<int> all;
+  for (const Watch& watch : state_->watches) {
+    all.push_back(watch.vertex);
+    const auto& patch = state_->obstacles[static_cast<std::size_t>(watch.obstacle)].vertices();
+    if (&watch == state_->watches.data() || (&watch)[-1].obstacle != watch.obstacle)
+      all.insert(all.end(), patch.begin(), patch.end());
+  }
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return Eigen::Map<const VectorXi>(all.data(), static_cast<Eigen::Index>(all.size()));
+}
+
+std::vector<ContactRow> ContactScene::detect(const PositionView& positions) {
+  State& s = *state_;
+  for (Obstacle& obstacle : s.obstacles)
+    if (!obstacle.is_rigid()) obstacle.follow(positions);
+  const double margin = s.options.margin;
+  std::vector<std::optional<SignedContact>> found(s.watches.size());
+  parallel_for(
+      static_cast<std::ptrdiff_t>(s.watches.size()),
+      [&](std::ptrdiff_t i) {
+        Watch& watch = s.watches[static_cast<std::size_t>(i)];
+        const Vector3d p = positions[watch.vertex];
+        const double travel = s.obstacles[static_cast<std::size_t>(watch.obstacle)].travel();
+        if (watch.known && watch.clear - (p - watch.at).norm() - (travel - watch.travel) > margin) return;
+        const double reach = margin + search_reach;
+        const std::optional<SignedContact> contact = s.contact(watch, p, reach);
+        watch.known = false;
+        if (contact && contact->gap <= margin) {
+          found[static_cast<std::size_t>(i)] = contact;
+          return;
+        }
+        if (!contact && s.obstacles[static_cast<std::size_t>(watch.obstacle)].closest(p, reach))
+          return;  // rim or far side
+        watch.known = true;
+        watch.clear = contact ? contact->gap : reach;
+        watch.at = p;
+        watch.travel = travel;
+      },
+      64);
+
+  std::vector<ContactRow> rows;
+  for (std::size_t i = 0; i < s.watches.size(); ++i) {
+    if (!found[i]) continue;
+    const Obstacle& obstacle = s.obstacles[static_cast<std::size_t>(s.watches[i].obstacle)];
+    ContactRow row;
+    row.vertices[0] = s.watches[i].vertex;
+    row.normal = found[i]->normal;
+    row.gap = found[i]->gap;
+    row.pair = s.watches[i].pair;
+    if (!obstacle.is_rigid())
+      for (int k = 0; k < 3; ++k) {
+        const double b = found[i]->barycentric[k];
+        if (b == 0) continue;
+        row.vertices[row.count] =
+            obstacle.vertices()[static_cast<std::size_t>(obstacle.triangles()(found[i]->triangle, k))];
+        row.coefficients[row.count] = -b;
+        ++row.count;
+      }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+double ContactScene::penetration(const PositionView& positions) const {
+  State& s = *state_;
+  for (Obstacle& obstacle : s.obstacles)
+    if (!obstacle.is_rigid()) obstacle.follow(positions);
+  std::vector<double> depth(s.watches.size(), 0.0);
+  parallel_for(
+      static_cast<std::ptrdiff_t>(s.watches.size()),
+      [&](std::ptrdiff_t i) {
+        const Watch& watch = s.watches[static_cast<std::size_t>(i)];
+        const auto contact = s.contact(watch, positions[watch.vertex], s.options.depth_limit);
+        if (contact) depth[static_cast<std::size_t>(i)] = std::max(0.0, -contact->gap);
+      },
+      64);
+  return depth.empty() ? 0.0 : *std::max_element(depth.begin(), depth.end());
+}
+
+int ContactScene::left_out() const {
+  return state_->left_out;
+}
+
+}  // namespace phiz

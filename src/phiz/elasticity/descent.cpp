@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "phiz/elasticity/descent.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "phiz/core/parallel.h"
+#include "phiz/elasticity/complementarity.h"
+
+namespace phiz {
+
+namespace {
+
+/// Rows whose gap would stay above this after the unconstrained step are left out of the multiplier problem, metres.
+constexpr double idle_gap = 2e-4;
+
+double longest_move(const double* p, std::ptrdiff_t rows) {
+  double longest2 = 0;
+  for (std::ptrdiff_t r = 0; r < rows; ++r)
+    longest2 = std::max(longest2, Eigen::Map<const Eigen::Vector3d>(p + 4 * r).squaredNorm());
+  return std::sqrt(longest2);
+}
+
+/// sum_k coefficient_k v_k . normal.
+double row_product(const ContactRow& row, const double* v) {
+  Vector3d sum = Vector3d::Zero();
+  for (int k = 0; k < row.count; ++k)
+    sum += row.coefficients[k] * Eigen::Map<const Vector3d>(v + 4 * static_cast<std::ptrdiff_t>(row.vertices[k]));
+  return sum.dot(row.normal);
+}
+
+double deepest(const ContactRows& contact) {
+  double depth = 0;
+  for (const ContactRow& row : contact.rows) depth = std::max(depth, -row.gap);
+  return depth;
+}
+
+}  // namespace
+
+Descent::Descent(ElasticSystem& system, const SolveOptions& options, ContactScene* contacts)
+    : system_(system),
+      options_(options),
+      contacts_(contacts),
+      inverse_(system.size(), std::max(1, options.history)),
+      contact_force_(hwy::AllocateAligned<double>(static_cast<std::size_t>(system.size()))),
+      inverse_force_(hwy::AllocateAligned<double>(static_cast<std::size_t>(system.size()))) {}
+
+ContactRows Descent::detect(const double* x) {
+  ContactRows out;
+  if (contacts_ == nullptr) return out;
+  for (ContactRow row : contacts_->detect({x, 4, system_.row_of.data()})) {
+    const std::int64_t key = (static_cast<std::int64_t>(row.pair) << 32) + row.vertices[0];
+    int kept = 0;
+    for (int k = 0; k < row.count; ++k) {
+      const int r = system_.row_of[row.vertices[k]];
+      if (r >= system_.free || system_.compliance_row[r] < 0) continue;
+      row.vertices[kept] = r;
+      row.coefficients[kept++] = row.coefficients[k];
+    }
+    row.count = kept;
+    if (kept == 0) continue;
+    out.rows.push_back(row);
+    out.key.push_back(key);
+  }
+  return out;
+}
+
+void Descent::find_step(const ContactRows& contact, const double* gradient, const double* inverse_gradient, double* p) {
+  const std::ptrdiff_t size = system_.size();
+  const Eigen::VectorXd u = inverse_.project(gradient);
+  inverse_.combine(inverse_gradient, inverse_.middle(u), -1, p);
+  const auto row_count = static_cast<Eigen::Index>(contact.rows.size());
+  lambda_ = Eigen::VectorXd::Zero(row_count);
+  row_motion_.resize(row_count);
+  std::vector<Eigen::Index> working;
+  for (Eigen::Index i = 0; i < row_count; ++i) {
+    const auto s = static_cast<std::size_t>(i);
+    row_motion_[i] = row_product(contact.rows[s], p);
+    if (contact.rows[s].gap + row_motion_[i] < idle_gap ||
+        std::binary_search(active_keys_.begin(), active_keys_.end(), contact.key[s]))
+      working.push_back(i);
+  }
+  if (working.empty()) {
+    active_keys_.clear();
+    return;
+  }
+
+  // (C H C^T) lambda + (gap - C H g) >= 0 (eq. 5.10, with unilateral multipliers).
+  const auto m = static_cast<Eigen::Index>(working.size());
+  Eigen::MatrixXd U(m, 2 * inverse_.pairs());
+  Eigen::VectorXd q(m);
+  std::vector<char> active(working.size(), 0);
+  for (Eigen::Index i = 0; i < m; ++i) {
+    const auto s = static_cast<std::size_t>(working[static_cast<std::size_t>(i)]);
+    const ContactRow& row = contact.rows[s];
+    q[i] = row.gap + row_motion_[static_cast<Eigen::Index>(s)];
+    active[static_cast<std::size_t>(i)] =
+        std::binary_search(active_keys_.begin(), active_keys_.end(), contact.key[s]) || q[i] < 0;
+    U.row(i).setZero();
+    for (int k = 0; k < row.count; ++k)
+      U.row(i) += row.coefficients[k] * row.normal.transpose() *
+                  inverse_.rows(4 * static_cast<std::ptrdiff_t>(row.vertices[k]), 3);
+  }
+  Eigen::MatrixXd M = U * (inverse_.middle() * U.transpose());
+  M = 0.5 * (M + M.transpose()).eval();
+  parallel_for(
+      m,
+      [&](std::ptrdiff_t i) {
+        const ContactRow& a = contact.rows[static_cast<std::size_t>(working[static_cast<std::size_t>(i)])];
+        for (Eigen::Index j = 0; j <= i; ++j) {
+          const ContactRow& b = contact.rows[static_cast<std::size_t>(working[static_cast<std::size_t>(j)])];
+          double sum = 0;
+          for (int k = 0; k < b.count; ++k) {
+            const auto column = system_.compliance.col(system_.compliance_row[b.vertices[k]]);
+            double part = 0;
+            for (int l = 0; l < a.count; ++l) part += a.coefficients[l] * column[system_.compliance_row[a.vertices[l]]];
+            sum += b.coefficients[k] * part;
+          }
+          M(i, j) += inverse_.gamma() * a.normal.dot(b.normal) * sum;
+        }
+      },
+      16);
+  M.triangularView<Eigen::StrictlyUpper>() = M.transpose();
+  M.diagonal().array() += 1e-10 * M.trace() / static_cast<double>(m);
+  const Eigen::VectorXd multipliers = solve_complementarity(M, q, active);
+  active_keys_.clear();
+  if (multipliers.size() == 0 || multipliers.isZero(0)) return;
+
+  std::fill_n(contact_force_.get(), size, 0.0);
+  for (Eigen::Index i = 0; i < m; ++i) {
+    if (multipliers[i] <= 0) continue;
+    const auto s = static_cast<std::size_t>(working[static_cast<std::size_t>(i)]);
+    const ContactRow& row = contact.rows[s];
+    lambda_[static_cast<Eigen::Index>(s)] = multipliers[i];
+    active_keys_.push_back(contact.key[s]);
+    for (int k = 0; k < row.count; ++k)
+      Eigen::Map<Vector3d>(contact_force_.get() + 4 * static_cast<std::ptrdiff_t>(row.vertices[k])) +=
+          multipliers[i] * row.coefficients[k] * row.normal;
+  }
+  std::sort(active_keys_.begin(), active_keys_.end());
+  std::copy_n(contact_force_.get(), size, inverse_force_.get());
+  system_.solver->solve(inverse_force_.get());
+  for (std::ptrdiff_t i = 0; i < size; ++i)
+    inverse_force_[static_cast<std::size_t>(i)] = inverse_gradient[i] - inverse_force_[static_cast<std::size_t>(i)];
+  inverse_.combine(inverse_force_.get(), inverse_.middle(u - U.transpose() * multipliers), -1, p);
+  for (Eigen::Index i = 0; i < row_count; ++i)
+    row_motion_[i] = row_product(contact.rows[static_cast<std::size_t>(i)], p);
+}
+
+double Descent::contact_residual(const ContactRows& contact, const double* gradient) {
+  std::copy_n(gradient, system_.size(), inverse_force_.get());
+  for (std::size_t i = 0; i < contact.rows.size(); ++i) {
+    const double lambda = lambda_[static_cast<Eigen::Index>(i)];
+    if (lambda == 0) continue;
+    const ContactRow& row = contact.rows[i];
+    for (int k = 0; k < row.count; ++k)
+      Eigen::Map<Vector3d>(inverse_force_.get() + 4 * static_cast<std::ptrdiff_t>(row.vertices[k])) -=
+          lambda * row.coefficients[k] * row.normal;
+  }
+  return std::sqrt(dot(inverse_force_.get(), inverse_force_.get(), system_.size()));
+}
+
+SolveStatistics Descent::run(double* x) {
+  const std::ptrdiff_t size = system_.size();
+  const auto allocate = [size] { return hwy::AllocateAligned<double>(static_cast<std::size_t>(size)); };
+  AlignedVector g = allocate(), next_g = allocate(), v = allocate(), next_v = allocate(), p = allocate(),
+                change = allocate();
+  AlignedVector trial = hwy::AllocateAligned<double>(static_cast<std::size_t>(4 * system_.vertices));
+  std::copy_n(x, 4 * system_.vertices, trial.get());
+  SolveStatistics statistics;
+  double energy = system_.evaluate(x, g.get(), system_.free);
+  std::copy_n(g.get(), size, v.get());
+  system_.solver->solve(v.get());
+  ContactRows contact = detect(x);
+
+  while (statistics.iterations < options_.max_iterations) {
+    ++statistics.iterations;
+    find_step(contact, g.get(), v.get(), p.get());
+    const double contact_work = lambda_.dot(row_motion_);
+    const double decrease = contact_work - dot(g.get(), p.get(), size);
+    double alpha = 1;
+    const double reach = longest_move(p.get(), system_.free);
+    if (reach > options_.longest_step) alpha = options_.longest_step / reach;
+
+    // Armijo's rule on the energy minus the work of the contact forces, which falls along p also out of penetrations. A
+    // plain local/global step (no pairs) fulfils it by construction: the factor bounds the energy from above.
+    double next_energy = energy;
+    bool accepted = false;
+    for (int halving = 0; halving < 12 && std::isfinite(reach); ++halving) {
+      for (std::ptrdiff_t i = 0; i < size; ++i)
+        trial[static_cast<std::size_t>(i)] = x[i] + alpha * p[static_cast<std::size_t>(i)];
+      next_energy = system_.evaluate(trial.get(), next_g.get(), system_.free);
+      if (next_energy - alpha * contact_work <= energy - 1e-4 * alpha * decrease + 1e-13 * std::abs(energy)) {
+        accepted = true;
+        break;
+      }
+      if (inverse_.pairs() > 0) break;
+      alpha *= 0.5;
+    }
+    if (!accepted) {
+      if (inverse_.pairs() == 0) break;
+      inverse_.clear();  // fall back to a plain step from the same place
+      continue;
+    }
+    std::copy_n(next_g.get(), size, next_v.get());
+    system_.solver->solve(next_v.get());
+    statistics.last_step = alpha * reach;
+    statistics.residual = contact_residual(contact, next_g.get());
+    if (options_.history > 0) {
+      for (std::ptrdiff_t i = 0; i < size; ++i) {
+        const auto s = static_cast<std::size_t>(i);
+        p[s] *= alpha;
+        g[s] = next_g[s] - g[s];
+        v[s] = next_v[s] - v[s];
+      }
+      inverse_.add(p.get(), g.get(), v.get());
+    }
+    std::copy_n(trial.get(), size, x);
+    std::swap(g, next_g);
+    std::swap(v, next_v);
+    energy = next_energy;
+    statistics.contacts = static_cast<int>((lambda_.array() > 0).count());
+    contact = detect(x);
+    statistics.penetration = deepest(contact);
+    statistics.residual /= std::max(system_.force_scale(), 1e-300);
+    statistics.converged = statistics.last_step <= options_.step_tolerance &&
+                           statistics.residual <= options_.residual_tolerance &&
+                           statistics.penetration <= options_.penetration_tolerance;
+    if (statistics.converged && statistics.iterations >= options_.min_iterations) break;
+  }
+  statistics.energy = energy;
+  return statistics;
+}
+
+}  // namespace phiz

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The iteration of ProjectiveDynamics: sequential quadratic steps in the metric of the factor (corrected by
+/// quasi-Newton pairs) under the linearised contact rows. Not a public header.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "phiz/elasticity/elastic_system.h"
+
+namespace phiz {
+
+/// The contact rows of one iteration in solver rows, with the columns that meet the quasi-Newton pairs.
+struct ContactRows {
+  std::vector<ContactRow> rows;   ///< vertices replaced by solver rows, fixed ones dropped
+  std::vector<std::int64_t> key;  ///< identifies pair and vertex, for warm starts
+};
+
+/// One accelerated solve.
+class Descent {
+ public:
+  Descent(ElasticSystem& system, const SolveOptions& options, ContactScene* contacts);
+
+  /// From and to x (four doubles per vertex).
+  SolveStatistics run(double* x);
+
+ private:
+  ContactRows detect(const double* x);
+  /// Step p from the gradient and its image under A^-1; fills lambda_ and row_motion_.
+  void find_step(const ContactRows& contact, const double* gradient, const double* inverse_gradient, double* p);
+  double contact_residual(const ContactRows& contact, const double* gradient);
+
+  ElasticSystem& system_;
+  const SolveOptions& options_;
+  ContactScene* contacts_;
+  LowRankInverse inverse_;
+  Eigen::VectorXd lambda_;      ///< multiplier per row of the last find_step, newtons
+  Eigen::VectorXd row_motion_;  ///< C p of the last find_step, metres
+  std::vector<std::int64_t> active_keys_;
+  AlignedVector contact_force_, inverse_force_;
+};
+
+}  // namespace phiz

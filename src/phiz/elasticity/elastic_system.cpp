@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "phiz/elasticity/elastic_system.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "phiz/core/error.h"
+#include "phiz/core/parallel.h"
+#include "phiz/geometry/operators.h"
+
+namespace phiz {
+
+namespace {
+
+constexpr std::ptrdiff_t block_grain = 64;
+constexpr std::ptrdiff_t row_grain = 512;
+
+void check(const ElasticBody& body) {
+  const Eigen::Index n = body.rest.rows();
+  if (static_cast<Eigen::Index>(body.fixed.size()) != n || body.stiffness.size() != body.tets.rows())
+    reject("elastic body", "needs one fixed flag per vertex and one stiffness per tet");
+  if (!body.rest.allFinite()) reject("elastic body", "a rest position is not a number");
+  if (body.tets.rows() == 0) reject("elastic body", "has no tets");
+  if (body.tets.minCoeff() < 0 || body.tets.maxCoeff() >= n)
+    reject("elastic body", "a tet names a vertex that does not exist");
+  if (!(body.stiffness.minCoeff() > 0) || !body.stiffness.allFinite())
+    reject("elastic body", "stiffness must be positive");
+  const double least = std::min({body.weights.target, body.weights.shape, body.weights.volume});
+  if (!(least >= 0) || !(body.weights.target + body.weights.shape + body.weights.volume > 0))
+    reject("elastic body", "term weights must not be negative, nor all zero");
+  for (const Attachment& a : body.attachments)
+    if (a.vertex < 0 || a.vertex >= n || !(a.weight >= 0) || !a.point.allFinite())
+      reject("elastic body", "an attachment names no vertex, or its weight or point is not usable");
+  if (body.time_step < 0 || (body.time_step > 0 && (body.mass.size() != n || !(body.mass.minCoeff() >= 0))))
+    reject("elastic body", "dynamics needs a mass per vertex and a positive time step");
+}
+
+}  // namespace
+
+ElasticSystem::ElasticSystem(const ElasticBody& body, const VectorXi& contact_vertices)
+    : vertices(body.rest.rows()), weights(body.weights), attachments(body.attachments) {
+  check(body);
+  // Quadratic part: 2 sum_w (weights) stiffness V G^T G + 2 attachments + M / h^2, over the free vertices.
+  const double total = weights.target + weights.shape + weights.volume;
+  SparseMatrixd A = tet_laplacian(body.rest, body.tets, 2 * total * body.stiffness);
+  std::vector<char> used(static_cast<std::size_t>(vertices), 0);
+  for (Eigen::Index i = 0; i < body.tets.size(); ++i) used[static_cast<std::size_t>(body.tets.data()[i])] = 1;
+  VectorXd diagonal = VectorXd::Zero(vertices);
+  for (const Attachment& a : attachments) diagonal[a.vertex] += 2 * a.weight;
+  VectorXd inertia_of;
+  if (body.time_step > 0) {
+    inertia_of = body.mass / (body.time_step * body.time_step);
+    diagonal += inertia_of;
+  }
+  std::vector<int> free_vertices, others;
+  for (int v = 0; v < vertices; ++v)
+    (used[static_cast<std::size_t>(v)] && !body.fixed[static_cast<std::size_t>(v)] ? free_vertices : others)
+        .push_back(v);
+  if (free_vertices.empty()) reject("elastic body", "no vertex is free to move");
+  free = static_cast<std::ptrdiff_t>(free_vertices.size());
+
+  std::vector<int> local(static_cast<std::size_t>(vertices), -1);
+  for (std::size_t i = 0; i < free_vertices.size(); ++i)
+    local[static_cast<std::size_t>(free_vertices[i])] = static_cast<int>(i);
+  const auto restrict_to = [&](const std::vector<int>& row) {
+    std::vector<Eigen::Triplet<double>> entries;
+    for (const int v : free_vertices) {
+      const int i = row[static_cast<std::size_t>(v)];
+      entries.emplace_back(i, i, diagonal[v]);
+      for (SparseMatrixd::InnerIterator it(A, v); it; ++it)
+        if (row[static_cast<std::size_t>(it.col())] >= 0)
+          entries.emplace_back(i, row[static_cast<std::size_t>(it.col())], it.value());
+    }
+    SparseMatrixd out(free, free);
+    out.setFromTriplets(entries.begin(), entries.end());
+    return out;
+  };
+  const VectorXi order = elimination_order(restrict_to(local));
+  row_of = VectorXi::Constant(vertices, -1);
+  for (std::ptrdiff_t i = 0; i < free; ++i)
+    row_of[free_vertices[static_cast<std::size_t>(order[i])]] = static_cast<int>(i);
+  std::vector<int> permuted(static_cast<std::size_t>(vertices), -1);
+  for (const int v : free_vertices) permuted[static_cast<std::size_t>(v)] = row_of[v];
+  solver = std::make_unique<VertexSolver>(restrict_to(permuted));
+  for (std::size_t i = 0; i < others.size(); ++i)
+    row_of[others[i]] = static_cast<int>(free + static_cast<std::ptrdiff_t>(i));
+  for (Attachment& a : attachments) a.vertex = row_of[a.vertex];
+  if (inertia_of.size() > 0) {
+    inertia.resize(vertices);
+    for (int v = 0; v < vertices; ++v) inertia[row_of[v]] = inertia_of[v];
+  }
+
+  // Tets in the order of their lowest row, so that neighbours in memory are neighbours in space.
+  std::vector<int> sequence(static_cast<std::size_t>(body.tets.rows()));
+  std::iota(sequence.begin(), sequence.end(), 0);
+  MatrixX4i rows(body.tets.rows(), 4);
+  for (Eigen::Index t = 0; t < rows.rows(); ++t)
+    for (int c = 0; c < 4; ++c) rows(t, c) = row_of[body.tets(t, c)];
+  std::stable_sort(sequence.begin(), sequence.end(),
+                   [&](int a, int b) { return rows.row(a).minCoeff() < rows.row(b).minCoeff(); });
+  MatrixX4i sorted(rows.rows(), 4);
+  VectorXd stiffness(rows.rows());
+  slot_of.resize(sequence.size());
+  for (std::size_t s = 0; s < sequence.size(); ++s) {
+    sorted.row(static_cast<Eigen::Index>(s)) = rows.row(sequence[s]);
+    stiffness[static_cast<Eigen::Index>(s)] = body.stiffness[sequence[s]];
+    slot_of[static_cast<std::size_t>(sequence[s])] = static_cast<std::ptrdiff_t>(s);
+  }
+  MatrixX3d rest(vertices, 3);
+  for (int v = 0; v < vertices; ++v) rest.row(row_of[v]) = body.rest.row(v);
+  elements = std::make_unique<ElementBlocks>(rest, sorted, stiffness);
+  for (std::ptrdiff_t s = 0; s < elements->tets; ++s) rest_volume += elements->rest_volume[static_cast<std::size_t>(s)];
+
+  incidence_start.assign(static_cast<std::size_t>(vertices) + 1, 0);
+  for (Eigen::Index i = 0; i < sorted.size(); ++i) ++incidence_start[static_cast<std::size_t>(sorted.data()[i]) + 1];
+  std::partial_sum(incidence_start.begin(), incidence_start.end(), incidence_start.begin());
+  incidence.resize(static_cast<std::size_t>(sorted.size()));
+  std::vector<int> fill(incidence_start.begin(), incidence_start.end() - 1);
+  for (Eigen::Index s = 0; s < sorted.rows(); ++s)
+    for (int c = 0; c < 4; ++c)
+      incidence[static_cast<std::size_t>(fill[static_cast<std::size_t>(sorted(s, c))]++)] =
+          static_cast<int>(((s / 8) * 4 + c) * 8 + s % 8);
+  corner_gradient = hwy::AllocateAligned<double>(static_cast<std::size_t>(elements->blocks) * 128);
+  prediction = hwy::AllocateAligned<double>(static_cast<std::size_t>(4 * vertices));
+  force = hwy::AllocateAligned<double>(static_cast<std::size_t>(4 * vertices));
+  std::fill_n(force.get(), 4 * vertices, 0.0);
+  load(body.rest, prediction.get());
+
+  compliance_row = VectorXi::Constant(free, -1);
+  std::vector<int> contact_rows;
+  for (const int v : contact_vertices) {
+    if (v < 0 || v >= vertices) reject("elastic body", "a contact vertex does not exist");
+    if (row_of[v] < free) contact_rows.push_back(row_of[v]);
+  }
+  std::sort(contact_rows.begin(), contact_rows.end());
+  contact_rows.erase(std::unique(contact_rows.begin(), contact_rows.end()), contact_rows.end());
+  for (std::size_t k = 0; k < contact_rows.size(); ++k) compliance_row[contact_rows[k]] = static_cast<int>(k);
+  compliance = solver->inverse_block(
+      Eigen::Map<const VectorXi>(contact_rows.data(), static_cast<Eigen::Index>(contact_rows.size())));
+}
+
+void ElasticSystem::load(const MatrixX3d& positions, double* x) const {
+  for (std::ptrdiff_t v = 0; v < vertices; ++v) {
+    double* p = x + 4 * static_cast<std::ptrdiff_t>(row_of[v]);
+    for (int k = 0; k < 3; ++k) p[k] = positions(v, k);
+    p[3] = 0;
+  }
+}
+
+void ElasticSystem::store(const double* x, MatrixX3d& positions) const {
+  for (std::ptrdiff_t v = 0; v < vertices; ++v)
+    for (int k = 0; k < 3; ++k) positions(v, k) = x[4 * static_cast<std::ptrdiff_t>(row_of[v]) + k];
+}
+
+double ElasticSystem::evaluate(const double* x, double* gradient, std::ptrdiff_t rows) {
+  double energy = parallel_sum(elements->blocks, block_grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    return evaluate_elements(*elements, weights, x, corner_gradient.get(), begin, end);
+  });
+  energy += parallel_sum(rows, row_grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    double part = 0;
+    for (std::ptrdiff_t r = begin; r < end; ++r) {
+      Eigen::Vector4d g = Eigen::Vector4d::Zero();
+      for (int i = incidence_start[static_cast<std::size_t>(r)]; i < incidence_start[static_cast<std::size_t>(r) + 1];
+           ++i)
+        g += Eigen::Map<const Eigen::Vector4d>(corner_gradient.get() +
+                                               4 * static_cast<std::ptrdiff_t>(incidence[static_cast<std::size_t>(i)]));
+      const Eigen::Map<const Eigen::Vector4d> p(x + 4 * r);
+      if (inertia.size() > 0) {
+        const Eigen::Vector4d d = p - Eigen::Map<const Eigen::Vector4d>(prediction.get() + 4 * r);
+        part += 0.5 * inertia[r] * d.squaredNorm();
+        g += inertia[r] * d;
+      }
+      if (has_force) {
+        const Eigen::Map<const Eigen::Vector4d> f(force.get() + 4 * r);
+        part -= f.dot(p);
+        g -= f;
+      }
+      Eigen::Map<Eigen::Vector4d>(gradient + 4 * r) = g;
+    }
+    return part;
+  });
+  for (const Attachment& a : attachments) {
+    if (a.vertex >= rows) continue;
+    const Vector3d d = Eigen::Map<const Vector3d>(x + 4 * static_cast<std::ptrdiff_t>(a.vertex)) - a.point;
+    const bool plane = !a.normal.isZero();
+    const Vector3d pull = plane ? Vector3d(a.normal.dot(d) * a.normal) : d;
+    energy += a.weight * pull.squaredNorm();
+    Eigen::Map<Vector3d>(gradient + 4 * static_cast<std::ptrdiff_t>(a.vertex)) += 2 * a.weight * pull;
+  }
+  return energy;
+}
+
+double ElasticSystem::force_scale() const {
+  return std::sqrt(parallel_sum(free, row_grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    double sum = 0;
+    for (std::ptrdiff_t r = begin; r < end; ++r) {
+      double magnitude = 0;
+      for (int i = incidence_start[static_cast<std::size_t>(r)]; i < incidence_start[static_cast<std::size_t>(r) + 1];
+           ++i)
+        magnitude += Eigen::Map<const Vector3d>(corner_gradient.get() +
+                                                4 * static_cast<std::ptrdiff_t>(incidence[static_cast<std::size_t>(i)]))
+                         .norm();
+      sum += magnitude * magnitude;
+    }
+    return sum;
+  }));
+}
+
+}  // namespace phiz

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The inside of ProjectiveDynamics: a body in the solver's own numbering (free vertices first, in order of
+/// elimination) with four doubles per vertex. Not a public header.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "phiz/elasticity/element_kernel.h"
+#include "phiz/elasticity/low_rank_inverse.h"
+#include "phiz/elasticity/projective_dynamics.h"
+#include "phiz/elasticity/vertex_solver.h"
+
+namespace phiz {
+
+struct ElasticSystem {
+  ElasticSystem(const ElasticBody& body, const VectorXi& contact_vertices);
+
+  std::ptrdiff_t vertices = 0;  ///< all
+  std::ptrdiff_t free = 0;      ///< the first rows
+  std::ptrdiff_t size() const { return 4 * free; }
+  VectorXi row_of;                      ///< solver row of each body vertex
+  std::vector<std::ptrdiff_t> slot_of;  ///< kernel slot of each tet
+  std::unique_ptr<ElementBlocks> elements;
+  TermWeights weights;
+  std::vector<Attachment> attachments;  ///< with solver rows
+  VectorXd inertia;                     ///< mass / h^2 per solver row, or empty
+  AlignedVector prediction, force;      ///< four per row
+  bool has_force = false;
+  std::unique_ptr<VertexSolver> solver;
+  VectorXi compliance_row;  ///< row of `compliance` per solver row, or -1
+  MatrixXd compliance;      ///< rows and columns of A^-1 that belong to contact vertices
+
+  std::vector<int> incidence_start, incidence;  ///< kernel outputs (in doubles / 4) that add up at each row
+  AlignedVector corner_gradient;                ///< what the kernel writes
+  double rest_volume = 0;
+
+  void load(const MatrixX3d& positions, double* x) const;
+  void store(const double* x, MatrixX3d& positions) const;
+  /// Energy; gradient at the first `rows` rows (4 x rows doubles).
+  double evaluate(const double* x, double* gradient, std::ptrdiff_t rows);
+  /// Root of the sum over free rows of (sum of the norms of the tets' forces)^2, after evaluate().
+  double force_scale() const;
+};
+
+}  // namespace phiz
