@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The form of the skin while it is built: where the vertices of the cage should be, in MILLIMETRES. Private to
+/// anatomy.
+#pragma once
+
+#include <vector>
+
+#include "phiz/anatomy/proportions.h"
+#include "phiz/anatomy/skin_identity.h"
+#include "phiz/anatomy/skin_topology.h"
+#include "phiz/geometry/mesh.h"
+
+namespace phiz {
+
+struct SkinForm {
+  SkinForm();
+
+  /// Wants vertex v of the left half (and its mirror image) at p; the larger the weight, the firmer. Vertices without a
+  /// place lie where the surface is smoothest.
+  void place(int v, const Vector3d& p, double weight = 1);
+  Vector3d at(int v) const { return X.row(v).transpose(); }
+  bool placed(int v) const { return weight[v] > 0; }
+
+  MatrixX3d X;                 ///< vertex_count x 3
+  std::vector<double> weight;  ///< 0: free
+  std::vector<char> on_limit;  ///< 1: the place is wanted for the limit surface, 0: for the control vertex
+};
+
+/// The sheet: brow, cheeks, nose, chin, scalp and neck of the mean head.
+void place_sheet(SkinForm& form);
+/// Lips and their surroundings of the mean head: mouth rings 1 to 6.
+void place_lips(SkinForm& form);
+/// The nostrils' tunnels.
+void place_nostrils(SkinForm& form);
+/// The auricle.
+void place_ears(SkinForm& form, const IdentityParameters& identity);
+/// Moves everything placed so far from the mean proportions to a person's, smoothly; then applies what the proportions
+/// do not hold (lip fullness, cheeks, ...).
+void fit_person(SkinForm& form, const Proportions& proportions, const IdentityParameters& identity);
+/// Lids and the socket behind the eyeball: eye rings 1 to 9, from the proportions.
+void place_lids(SkinForm& form, const Proportions& proportions, const IdentityParameters& identity);
+/// The oral cavity: mouth rings 7 to 10 and the throat, from the dental arch.
+void place_mouth_bag(SkinForm& form, const Proportions& proportions);
+
+/// Moves the vertices to where the bending energy of the surface plus the weighted squared distance from the places is
+/// least.
+void fair(SkinForm& form);
+
+}  // namespace phiz

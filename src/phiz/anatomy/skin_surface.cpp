@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "phiz/anatomy/skin_surface.h"
+
+#include <cmath>
+
+#include "phiz/anatomy/skin_form.h"
+#include "phiz/anatomy/skin_refine.h"
+#include "phiz/anatomy/skin_regions.h"
+#include "phiz/anatomy/skin_topology.h"
+#include "phiz/anatomy/skin_uv.h"
+#include "phiz/core/error.h"
+
+namespace phiz {
+namespace {
+
+PolygonMesh empty_cage() {
+  PolygonMesh cage;
+  for (const auto& face : skin_topology().faces()) cage.faces.emplace_back(face.begin(), face.end());
+  return cage;
+}
+
+/// The limit positions of the cage's vertices from the control vertices; the same for every person.
+const SparseMatrixd& limit_mask() {
+  static const SparseMatrixd mask = [] {
+    PolygonMesh cage = empty_cage();
+    cage.V.setZero(skin_topology().vertex_count(), 3);
+    return subdivide(cage, 0).limit;
+  }();
+  return mask;
+}
+
+/// Moves control vertices until the limit surface passes through the places of those that ask for it.
+void pull_to_limit(SkinForm& form) {
+  const MatrixX3d wanted = form.X;
+  constexpr int rounds = 4;  // more would only sharpen the noise of the places
+  for (int k = 0; k < rounds; ++k) {
+    const MatrixX3d error = wanted - limit_mask() * form.X;
+    for (Eigen::Index v = 0; v < error.rows(); ++v)
+      if (form.on_limit[v]) form.X.row(v) += error.row(v);
+  }
+}
+
+MatrixX3d cage_vertices(const Proportions& proportions, const IdentityParameters& identity) {
+  SkinForm form;
+  place_sheet(form);
+  place_lips(form);
+  place_nostrils(form);
+  place_ears(form, identity);
+  fit_person(form, proportions, identity);
+  place_lids(form, proportions, identity);
+  place_mouth_bag(form, proportions);
+  fair(form);
+  pull_to_limit(form);
+  return form.X * 1e-3;
+}
+
+void check(const Proportions& p) {
+  const bool sane =
+      std::isfinite(p.vertex.sum() + p.menton.sum() + p.eye_centre.sum() + p.cheilion.sum() + p.arch.half_width) &&
+      p.vertex.x() - p.menton.x() > 0.1 && p.vertex.x() - p.menton.x() < 0.5 && p.eye_radius > 0.005 &&
+      p.eye_radius < 0.02;
+  if (!sane)
+    reject("proportions", "they make no human head", "give metres in the head frame; start from Proportions{}");
+}
+
+}  // namespace
+
+SkinSurface build_skin(const Proportions& proportions, const IdentityParameters& identity) {
+  check(proportions);
+  personalise(proportions, identity);  // rejects parameters out of range
+  // The texture map is that of the mean head, so that textures fit everybody.
+  static const PolygonMesh mean = [] {
+    PolygonMesh cage = empty_cage();
+    cage.V = cage_vertices(Proportions{}, IdentityParameters{});
+    unwrap_skin(cage);
+    return cage;
+  }();
+  SkinSurface skin;
+  skin.cage = mean;
+  skin.cage.V = cage_vertices(proportions, identity);
+  skin.regions = skin_regions();
+  skin.landmarks = skin_landmarks();
+  return skin;
+}
+
+}  // namespace phiz
