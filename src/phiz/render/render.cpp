@@ -228,8 +228,7 @@ Image render(const Scene& scene, const Camera& camera, const RenderOptions& opti
   if (options.shading == Shading::lit) record_visibility(frame);
   Image image{camera.width, camera.height, 3, {}};
   image.pixels.resize(static_cast<std::size_t>(camera.width) * camera.height * 3);
-  std::vector<Sample2> offsets;
-  for (int j = 0; j < options.samples; ++j) offsets.push_back(lens_offset(j, options.samples));
+  const std::vector<Sample2> offsets = lens_offsets(options.samples);
   for_pixels(camera, [&](int x, int y) {
     Vector3f colour = Vector3f::Zero();
     for (const Sample2& o : offsets)

@@ -66,12 +66,19 @@ int pixel_pattern(int x, int y) {
   return order[(y & 3) * 4 + (x & 3)] + 16 * order[(y >> 2 & 3) * 4 + (x >> 2 & 3)];
 }
 
-Sample2 lens_offset(int j, int count) {
-  if (count == 1) return {0, 0};
+std::vector<Sample2> lens_offsets(int count) {
   const auto tent = [](double u) {
     return static_cast<float>(u < 0.5 ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 * (1 - u)));
   };
-  return {tent((j + 0.5) / count), tent(fraction((j + 0.5) * golden))};
+  std::vector<Sample2> offsets(static_cast<std::size_t>(count));
+  Sample2 mean;
+  for (int j = 0; j < count; ++j) {
+    offsets[j] = {tent((j + 0.5) / count), tent(fraction((j + 0.5) * golden))};
+    mean.x += offsets[j].x / static_cast<float>(count);
+    mean.y += offsets[j].y / static_cast<float>(count);
+  }
+  for (Sample2& o : offsets) o = {o.x - mean.x, o.y - mean.y};
+  return offsets;
 }
 
 Eigen::Vector3f grain_slope(const Eigen::Vector3f& rest, float strength, float size, float footprint) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace phiz::detail {
 
@@ -18,8 +19,8 @@ float line_sample(int j, int count, int pattern);
 /// The pattern of a pixel, repeating every 16 pixels; its value modulo 16 takes each value once in any 4 x 4 block.
 int pixel_pattern(int x, int y);
 
-/// Offset in pixels of lens sample `j` of `count`, distributed as a tent of radius 1 about the pixel's centre.
-Sample2 lens_offset(int j, int count);
+/// Offsets in pixels of the lens samples of every pixel: a tent of radius 1 about the pixel's centre, mean zero.
+std::vector<Sample2> lens_offsets(int count);
 
 /// Slope of a fine bump at a rest position; fades out when a pixel (`footprint`) is coarser than the bump.
 Eigen::Vector3f grain_slope(const Eigen::Vector3f& rest, float strength, float size, float footprint);
