@@ -1,10 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The verbs of the command, one source file each. A verb adds its subcommand with options, help and a callback that
-/// does the work; the callback throws phiz::Error, main.cpp turns errors into messages and exit codes.
+/// The verbs of the command, one source file each. add_VERB adds a subcommand with its options, help and example, and a
+/// callback that does the work. Callbacks throw phiz::Error; main.cpp turns errors into messages and exit codes.
 #pragma once
 
 namespace CLI {
 class App;
 }
 
-namespace phiz {}  // namespace phiz
+namespace phiz {
+
+void add_template(CLI::App& app);
+void add_animate(CLI::App& app);
+void add_export(CLI::App& app);
+void add_inspect(CLI::App& app);
+void add_render(CLI::App& app);
+void add_bench(CLI::App& app);
+
+}  // namespace phiz

@@ -65,6 +65,10 @@ void Progress::draw(bool last) {
   std::fflush(stderr);
 }
 
+void announce(const std::string& what) {
+  if (!quiet_flag) std::fprintf(stderr, "%s\n", what.c_str());
+}
+
 void catch_interrupts() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);

@@ -30,6 +30,9 @@ class Progress {
   std::chrono::steady_clock::time_point drawn_;
 };
 
+/// One line about what is being done, on standard error; nothing when quiet.
+void announce(const std::string& what);
+
 /// Makes Ctrl-C (SIGINT) and SIGTERM set a flag instead of ending the process; a second Ctrl-C ends it.
 void catch_interrupts();
 /// True once the user has asked to stop. Long loops ask after each finished step.

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include "command.h"
+
+namespace phiz::testing {
+namespace {
+
+TEST(Usage, HelpAndVersionSucceed) {
+  const Outcome help = phiz_command({"--help"});
+  EXPECT_EQ(help.code, 0);
+  EXPECT_NE(help.out.find("Usage"), std::string::npos);
+  const Outcome version = phiz_command({"--version"});
+  EXPECT_EQ(version.code, 0);
+  EXPECT_EQ(version.out.rfind("phiz ", 0), 0U) << version.out;
+}
+
+TEST(Usage, MistakesOnTheCommandLineExitWithTwo) {
+  const std::vector<std::vector<std::string>> mistakes = {
+      {},
+      {"nonsense"},
+      {"--threads", "many"},
+      {"--threads", "-3"},
+      {"template"},
+      {"template", "builtin"},
+      {"template", "builtin", "--size", "huge", "-o", "x.phiz"},
+      {"template", "builtin", "--person", "Ada", "-o", "x.phiz"},
+      {"animate"},
+      {"animate", "head.phiz"},
+      {"export", "take.phiz"},
+      {"inspect"},
+      {"render", "take.phiz"},
+      {"bench"},
+      {"bench", "nonsense"},
+  };
+  for (const auto& words : mistakes) {
+    const Outcome outcome = phiz_command(words);
+    std::string line;
+    for (const auto& word : words) line += " " + word;
+    EXPECT_EQ(outcome.code, 2) << "phiz" << line << "\n" << outcome.err;
+    EXPECT_FALSE(outcome.err.empty()) << "phiz" << line;
+  }
+}
+
+TEST(Usage, EveryVerbShowsAnExample) {
+  for (const std::string verb : {"animate", "export", "inspect", "render", "bench"}) {
+    const Outcome help = phiz_command({verb, "--help"});
+    EXPECT_EQ(help.code, 0) << verb;
+    EXPECT_NE(help.out.find("Example:"), std::string::npos) << "no example in the help of " << verb;
+    EXPECT_NE(help.out.find("--json"), std::string::npos) << verb;
+  }
+  const Outcome help = phiz_command({"template", "builtin", "--help"});
+  EXPECT_EQ(help.code, 0);
+  EXPECT_NE(help.out.find("Example:"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace phiz::testing
