@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "command.h"
+
+namespace phiz::testing {
+namespace {
+
+const std::string triangle = "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\n";
+const std::string csv_header = "Timecode,BlendShapeCount,JawOpen,HeadYaw\n";
+
+struct BrokenFile {
+  std::string name;
+  std::string text;
+  std::string says;  ///< a word that the message must contain, so that the user finds the place
+};
+
+std::ostream& operator<<(std::ostream& out, const BrokenFile& file) {
+  return out << file.name;
+}
+
+class BadFile : public ::testing::TestWithParam<BrokenFile> {};
+
+TEST_P(BadFile, IsRefusedWithPlaceAndReason) {
+  const ScratchFolder scratch;
+  const std::string path = scratch / GetParam().name;
+  write_text(path, GetParam().text);
+  const Outcome outcome = phiz_command({"inspect", path});
+  EXPECT_EQ(outcome.code, 3) << outcome.out << outcome.err;
+  EXPECT_NE(outcome.err.find(GetParam().name), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find(GetParam().says), std::string::npos) << outcome.err;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, BadFile,
+    ::testing::Values(
+        BrokenFile{"empty.obj", "", "obj"}, BrokenFile{"nan.obj", triangle + "v nan 0 0\nf 1 2 3\n", ":4"},
+        BrokenFile{"huge-index.obj", triangle + "f 1 2 99999999999\n", ":4"},
+        BrokenFile{"letters.obj", "v 0 zero 0\n", ":1"},
+        BrokenFile{"claims.ply",
+                   "ply\nformat ascii 1.0\nelement vertex 1000000000000\nproperty float x\nproperty float "
+                   "y\nproperty float z\nend_header\n0 0 0\n",
+                   "ply"},
+        BrokenFile{"cut.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0", "stl"},
+        BrokenFile{"cut.glb", std::string("glTF\x02\0\0\0\xff\0\0\0", 12), "glb"}, BrokenFile{"empty.csv", "", "csv"},
+        BrokenFile{"rows-missing.csv", csv_header, "csv"},
+        BrokenFile{"nan.csv", csv_header + "00:00:00:00.0,61,nan,0\n", ":2"},
+        BrokenFile{"percent.csv", csv_header + "00:00:00:00.0,61,87,0\n00:00:00:01.0,61,55,0\n", "percent"},
+        BrokenFile{"degrees.csv", csv_header + "00:00:00:00.0,61,0.2,35\n00:00:00:01.0,61,0.2,40\n", "degrees"},
+        BrokenFile{"empty.phiz", "", "phiz"}, BrokenFile{"text.phiz", "this is no container", "phiz"},
+        BrokenFile{"text.png", "this is no picture", "png"}, BrokenFile{"unknown.xyz", "?", "xyz"}),
+    [](const ::testing::TestParamInfo<BrokenFile>& info) {
+      std::string name = info.param.name;
+      for (char& c : name)
+        if (c == '.' || c == '-') c = '_';
+      return name;
+    });
+
+TEST(BadInput, AMissingFileExitsWithThreeAndNamesIt) {
+  const Outcome outcome = phiz_command({"inspect", "no-such-file.phiz"});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_NE(outcome.err.find("no-such-file.phiz"), std::string::npos) << outcome.err;
+}
+
+TEST(BadInput, ATruncatedHeadIsRefusedWhereverItEnds) {
+  const ScratchFolder scratch;
+  const std::string head = read_text(PHIZ_PREVIEW_HEAD);
+  ASSERT_FALSE(head.empty()) << "run through ctest, which makes " PHIZ_PREVIEW_HEAD " first";
+  for (const double share : {0.0, 0.01, 0.3, 0.7, 0.999}) {
+    const std::string path = scratch / "cut.phiz";
+    write_text(path, head.substr(0, static_cast<std::size_t>(share * static_cast<double>(head.size()))));
+    const Outcome outcome = phiz_command({"animate", path, PHIZ_PERFORMANCE, "-o", scratch / "take.phiz"});
+    EXPECT_EQ(outcome.code, 3) << share << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(scratch / "take.phiz"));
+  }
+}
+
+TEST(BadInput, FlippedBytesInAHeadAreRefused) {
+  const ScratchFolder scratch;
+  const std::string head = read_text(PHIZ_PREVIEW_HEAD);
+  ASSERT_FALSE(head.empty()) << "run through ctest, which makes " PHIZ_PREVIEW_HEAD " first";
+  for (std::size_t part = 1; part < 8; ++part) {
+    std::string damaged = head;
+    damaged[part * head.size() / 8] = static_cast<char>(damaged[part * head.size() / 8] ^ 0x55);
+    write_text(scratch / "damaged.phiz", damaged);
+    const Outcome outcome = phiz_command({"inspect", scratch / "damaged.phiz"});
+    EXPECT_EQ(outcome.code, 3) << "byte " << part << "/8: " << outcome.err;
+  }
+}
+
+TEST(BadInput, AWrongKindOfFileIsNamed) {
+  const ScratchFolder scratch;
+  const Outcome swapped = phiz_command({"animate", PHIZ_PERFORMANCE, PHIZ_PREVIEW_HEAD, "-o", scratch / "take.phiz"});
+  EXPECT_EQ(swapped.code, 3) << swapped.err;
+  const Outcome no_take = phiz_command({"export", PHIZ_PERFORMANCE, "-o", scratch / "x.glb"});
+  EXPECT_EQ(no_take.code, 3) << no_take.err;
+}
+
+TEST(BadInput, AnOutputThatCannotBeWrittenIsAFailure) {
+  const Outcome outcome = phiz_command({"template", "builtin", "--size", "preview", "-o", "/proc/no/head.phiz"});
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+}
+
+}  // namespace
+}  // namespace phiz::testing
