@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "phiz/io/take_file.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+
+#include "phiz/core/error.h"
+#include "phiz/io/container.h"
+#include "phiz/io/container_file.h"
+#include "phiz/io/output_file.h"
+#include "phiz/io/stored_anatomy.h"
+#include "phiz/io/stored_frames.h"
+
+namespace phiz {
+
+namespace {
+
+constexpr const char* count_name = "frames";  // the number of finished frames; written after each of them
+
+std::string part_name(const std::string& path) {
+  return path + ".part";
+}
+
+void store_take_head(const Hdf5Group& root, const Take& take) {
+  root.set(count_name, 0);
+  root.set("frames_planned", take.frames_planned);
+  root.set("frame_rate", take.frame_rate);
+  root.set("model", take.model);
+  root.write_strings("expressions", take.expressions);
+  store_mesh(root.create_group("skin"), take.skin);
+  store_parts(root.create_group("parts"), take.parts);
+  store_joint(root.create_group("jaw"), take.joint);
+  root.write("left_eye_centre", take.left_eye_centre);
+  root.write("right_eye_centre", take.right_eye_centre);
+  root.create_group("frame_data");
+}
+
+Take stored_take_head(const Hdf5Group& root) {
+  Take take;
+  take.frames_planned = root.integer("frames_planned");
+  take.frame_rate = root.number("frame_rate");
+  take.model = root.text("model");
+  take.expressions = root.read_strings("expressions");
+  take.skin = stored_mesh(root.group("skin"));
+  take.parts = stored_parts(root.group("parts"));
+  take.joint = stored_joint(root.group("jaw"));
+  take.left_eye_centre = root.read<Vector3d>("left_eye_centre");
+  take.right_eye_centre = root.read<Vector3d>("right_eye_centre");
+  if (!(take.frame_rate > 0)) reject(root.where("frame_rate"), "the frame rate is not positive");
+  if (!take.left_eye_centre.allFinite() || !take.right_eye_centre.allFinite()) {
+    reject(root.where("left_eye_centre"), "the centre of an eye is not finite");
+  }
+  return take;
+}
+
+int stored_frame_count(const Hdf5Group& root) {
+  const int frames = root.integer(count_name);
+  if (frames < 0) reject(root.where(count_name), fmt::format("{} frames", frames));
+  return frames;
+}
+
+/// What differs between the head of a take that is there and of one that is to go on; empty when nothing does.
+std::string difference(const Take& a, const Take& b) {
+  if (a.model != b.model) return fmt::format("its head is '{}', not '{}'", a.model, b.model);
+  if (a.frame_rate != b.frame_rate) return fmt::format("its frame rate is {}, not {}", a.frame_rate, b.frame_rate);
+  if (a.frames_planned != b.frames_planned) {
+    return fmt::format("its performance has {} frames, not {}", a.frames_planned, b.frames_planned);
+  }
+  if (a.expressions != b.expressions) return "its performance has other expressions";
+  if (a.skin.V.rows() != b.skin.V.rows() || a.skin.V != b.skin.V || a.skin.F.rows() != b.skin.F.rows() ||
+      a.skin.F != b.skin.F) {
+    return "its skin is another one";
+  }
+  if (a.parts.size() != b.parts.size()) return "its head has other parts";
+  return {};
+}
+
+}  // namespace
+
+struct TakeWriter::State {
+  std::string path;
+  ContainerFile file;
+  Eigen::Index skin_vertices = 0;
+  Eigen::Index expressions = 0;
+  int frames = 0;
+  std::optional<FrameSizes> sizes;  ///< known from the first frame on
+};
+
+TakeWriter::TakeWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+TakeWriter::TakeWriter(const std::string& path, const Take& head) {
+  const std::scoped_lock lock(hdf5_lock());
+  ContainerFile file = ContainerFile::create(part_name(path), name_of(ContainerKind::take));
+  store_take_head(file.root(), head);
+  file.flush();
+  state_ = std::make_unique<State>(State{path, std::move(file), head.skin.V.rows(),
+                                         static_cast<Eigen::Index>(head.expressions.size()), 0, std::nullopt});
+}
+
+TakeWriter TakeWriter::resume(const std::string& path, const Take& head) {
+  const std::scoped_lock lock(hdf5_lock());
+  const std::string part = part_name(path);
+  if (!std::filesystem::exists(part)) {
+    if (!std::filesystem::exists(path)) return {path, head};
+    std::error_code code;
+    std::filesystem::copy_file(path, part, code);
+    if (code) fail("cannot write " + part + ": " + code.message(), "free some space");
+  }
+  try {
+    ContainerFile file = ContainerFile::reopen(part);
+    file.require_kind(name_of(ContainerKind::take));
+    const std::string different = difference(stored_take_head(file.root()), head);
+    if (!different.empty()) {
+      reject(path, "the take there cannot be resumed: " + different, "choose another file or start anew");
+    }
+    const int frames = stored_frame_count(file.root());
+    std::optional<FrameSizes> sizes;
+    if (frames > 0) sizes = stored_sizes(file.root().group("frame_data"), frames);
+    return TakeWriter(std::make_unique<State>(State{
+        path, std::move(file), head.skin.V.rows(), static_cast<Eigen::Index>(head.expressions.size()), frames, sizes}));
+  } catch (...) {
+    // The copy was ours; what a killed program left stays for the user to look at.
+    if (std::filesystem::exists(path)) std::filesystem::remove(part);
+    throw;
+  }
+}
+
+TakeWriter::TakeWriter(TakeWriter&&) noexcept = default;
+TakeWriter& TakeWriter::operator=(TakeWriter&&) noexcept = default;
+
+TakeWriter::~TakeWriter() {
+  if (!state_) return;
+  try {
+    finish();
+  } catch (const Error&) {
+    // The frames stay in the .part file; a destructor cannot report more.
+  }
+}
+
+int TakeWriter::frames() const {
+  return state_ ? state_->frames : 0;
+}
+
+void TakeWriter::append(const TakeFrame& frame) {
+  const std::scoped_lock lock(hdf5_lock());
+  if (!state_) fail("a frame was appended to a take that is finished");
+  const FrameSizes sizes = sizes_of(frame);
+  const std::string here = fmt::format("{}: frame {}", state_->path, state_->frames);
+  if (sizes.skin != state_->skin_vertices || sizes.weights != state_->expressions) {
+    fail(fmt::format("{} has {} vertices and {} weights, the take {} and {}", here, sizes.skin, sizes.weights,
+                     state_->skin_vertices, state_->expressions));
+  }
+  const std::string defect = defect_of(frame);
+  if (!defect.empty()) fail(here + ": " + defect);
+  const Hdf5Group group = state_->file.root().group("frame_data");
+  if (!state_->sizes) {
+    if (!group.has_array("numbers")) create_frames(group, sizes);
+    state_->sizes = stored_sizes(group, 0);
+  }
+  if (!(*state_->sizes == sizes)) fail(here + " has a volume or velocities and others do not, or of another size");
+  store_frame(group, state_->frames, frame);
+  state_->file.root().set(count_name, state_->frames + 1);
+  state_->file.flush();
+  ++state_->frames;
+}
+
+void TakeWriter::finish() {
+  const std::scoped_lock lock(hdf5_lock());
+  if (!state_) return;
+  const std::unique_ptr<State> state = std::move(state_);
+  state->file.finish();
+  rename_file(part_name(state->path), state->path);
+}
+
+struct TakeReader::State {
+  ContainerFile file;
+  Take head;
+  int frames = 0;
+  FrameSizes sizes;
+};
+
+TakeReader::TakeReader(const std::string& path) {
+  const std::scoped_lock lock(hdf5_lock());
+  state_ = std::make_unique<State>(State{ContainerFile::open(path), {}, 0, {}});
+  state_->file.require_kind(name_of(ContainerKind::take));
+  const Hdf5Group& root = state_->file.root();
+  state_->head = stored_take_head(root);
+  state_->frames = stored_frame_count(root);
+  if (state_->frames == 0) return;
+  const Hdf5Group group = root.group("frame_data");
+  state_->sizes = stored_sizes(group, state_->frames);
+  if (state_->sizes.skin != state_->head.skin.V.rows()) {
+    reject(group.where("skin"),
+           fmt::format("frames of {} vertices for a skin of {}", state_->sizes.skin, state_->head.skin.V.rows()));
+  }
+  if (state_->sizes.weights != static_cast<Eigen::Index>(state_->head.expressions.size())) {
+    reject(group.where("weights"), "frames have another number of weights than there are expressions");
+  }
+}
+
+TakeReader::TakeReader(TakeReader&&) noexcept = default;
+TakeReader& TakeReader::operator=(TakeReader&&) noexcept = default;
+TakeReader::~TakeReader() {
+  const std::scoped_lock lock(hdf5_lock());
+  state_.reset();
+}
+
+const Take& TakeReader::head() const {
+  return state_->head;
+}
+int TakeReader::frames() const {
+  return state_->frames;
+}
+
+TakeFrame TakeReader::frame(int index) const {
+  const std::scoped_lock lock(hdf5_lock());
+  if (index < 0 || index >= state_->frames) {
+    throw Error(ErrorKind::usage, fmt::format("frame {} of a take that has {} frames", index, state_->frames));
+  }
+  return stored_frame(state_->file.root().group("frame_data"), index, state_->sizes);
+}
+
+void save(const std::string& path, const Take& take) {
+  TakeWriter writer(path, take);
+  for (const TakeFrame& frame : take.frames) writer.append(frame);
+  writer.finish();
+}
+
+Take load_take(const std::string& path) {
+  const TakeReader reader(path);
+  Take take = reader.head();
+  for (int i = 0; i < reader.frames(); ++i) take.frames.push_back(reader.frame(i));
+  return take;
+}
+
+}  // namespace phiz
