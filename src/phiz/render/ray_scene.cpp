@@ -50,12 +50,13 @@ TracedSurface prepare(const Surface& surface) {
   }
   s.colour.resize(surface.colour.rows());
   for (Eigen::Index i = 0; i < surface.colour.rows(); ++i) s.colour[i] = surface.colour.row(i).cast<float>();
-  if (surface.material.grain > 0) {
+  if (surface.material.grain > 0 || surface.colour_at) {
     const MatrixX3d& rest = surface.rest.rows() == n ? surface.rest : surface.mesh.V;
     s.rest.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) s.rest[i] = rest.row(i).cast<float>();
   }
   s.rotation = surface.transform.rotation().cast<float>();
+  s.colour_at = surface.colour_at;
   s.material = surface.material;
   s.wireframe = surface.wireframe;
   s.flat = surface.flat;
@@ -138,8 +139,8 @@ bool RayScene::occluded(const Vector3f& origin, const Vector3f& direction, float
   return r.ray.tfar < 0;
 }
 
-SurfacePoint RayScene::point(const Hit& hit, const Vector3f& direction) const {
-  SurfacePoint p;
+ShadedPoint RayScene::point(const Hit& hit, const Vector3f& direction) const {
+  ShadedPoint p;
   const TracedSurface& s = surfaces_[hit.surface];
   const auto& t = s.triangle[hit.triangle];
   p.surface = &s;
@@ -173,6 +174,7 @@ SurfacePoint RayScene::point(const Hit& hit, const Vector3f& direction) const {
   p.colour = s.colour.empty() ? Vector3f(1, 1, 1)
                               : Vector3f(w * s.colour[t[0]] + hit.u * s.colour[t[1]] + hit.v * s.colour[t[2]]);
   p.rest = s.rest.empty() ? p.position : Vector3f(w * s.rest[t[0]] + hit.u * s.rest[t[1]] + hit.v * s.rest[t[2]]);
+  if (s.colour_at) p.colour = p.colour.cwiseProduct(s.colour_at(p.rest.cast<double>()).cast<float>());
   return p;
 }
 

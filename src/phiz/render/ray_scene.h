@@ -27,13 +27,14 @@ struct TracedSurface {
   std::vector<Vector3f> normal, colour, rest;
   std::vector<Eigen::Matrix<unsigned, 3, 1>> triangle;
   Eigen::Matrix3f rotation = Eigen::Matrix3f::Identity();  // world from rest
+  std::function<Vector3d(const Vector3d&)> colour_at;
   Material material;
   Wireframe wireframe;
   bool flat = false;
 };
 
 /// A point on a surface as seen along a ray.
-struct SurfacePoint {
+struct ShadedPoint {
   const TracedSurface* surface = nullptr;
   Vector3f position, normal, face_normal;  // normals face the viewer
   Vector3f smooth_position;                // on the curved surface that the normals suggest: origin of secondary rays
@@ -49,7 +50,7 @@ class RayScene {
   Hit first_hit(const Vector3f& origin, const Vector3f& direction, float near) const;
   /// Any opaque surface between the ends?
   bool occluded(const Vector3f& origin, const Vector3f& direction, float near, float far) const;
-  SurfacePoint point(const Hit& hit, const Vector3f& direction) const;
+  ShadedPoint point(const Hit& hit, const Vector3f& direction) const;
   /// Length of the bounding box's diagonal; 1 for an empty scene.
   float size() const { return size_; }
   const std::vector<TracedSurface>& surfaces() const { return surfaces_; }

@@ -64,7 +64,7 @@ void record_visibility(Frame& frame) {
     const Vector3f d = frame.lens.direction(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
     const Hit hit = frame.rays.first_hit(frame.lens.eye, d, frame.lens.near / -d.dot(frame.lens.back));
     if (!hit) return;
-    const SurfacePoint point = frame.rays.point(hit, d);
+    const ShadedPoint point = frame.rays.point(hit, d);
     PixelRecord& record = frame.records[static_cast<std::size_t>(y) * frame.camera.width + x];
     record = {point.surface, point.position, point.normal, trace_visibility(frame.context, point, pixel_pattern(x, y))};
   });
@@ -72,7 +72,7 @@ void record_visibility(Frame& frame) {
 
 /// Visibility at a point seen through pixel position (x, y): from the 4 x 4 records about it that lie on the same
 /// surface, or traced where there are too few.
-Visibility gather_visibility(const Frame& frame, const SurfacePoint& point, float x, float y, float footprint) {
+Visibility gather_visibility(const Frame& frame, const ShadedPoint& point, float x, float y, float footprint) {
   const int x0 = static_cast<int>(std::floor(x - 0.5F)) - 1, y0 = static_cast<int>(std::floor(y - 0.5F)) - 1;
   Visibility sum;
   sum.ambient = 0;
@@ -99,7 +99,7 @@ Visibility gather_visibility(const Frame& frame, const SurfacePoint& point, floa
 }
 
 /// Display-linear colour of one surface point.
-Vector3f shade(const Frame& frame, const SurfacePoint& point, const Vector3f& direction, float x, float y) {
+Vector3f shade(const Frame& frame, const ShadedPoint& point, const Vector3f& direction, float x, float y) {
   const float depth = frame.lens.depth(point.position);
   if (frame.options.shading == Shading::normals) {
     const Vector3f& n = point.normal;
@@ -129,7 +129,7 @@ Vector3f trace(const Frame& frame, float x, float y) {
   for (int layer = 0; layer < most_layers; ++layer) {
     const Hit hit = frame.rays.first_hit(frame.lens.eye, d, near);
     if (!hit) break;
-    const SurfacePoint point = frame.rays.point(hit, d);
+    const ShadedPoint point = frame.rays.point(hit, d);
     const float opacity = static_cast<float>(point.surface->material.opacity);
     const float facing = std::abs(point.normal.dot(d));
     const float cover = layer + 1 == most_layers ? 1.F : opacity + (1 - opacity) * std::pow(1 - facing, 3.F);

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,8 @@ struct Surface {
   MatrixX3d normals;  ///< unit normal per vertex; empty: angle-weighted normals are computed
   MatrixX3d colour;   ///< linear RGB per vertex, multiplied with the albedo; empty: none
   MatrixX3d rest;     ///< positions that fix the grain of the material to the moving surface; empty: mesh.V
+  std::function<Vector3d(const Vector3d&)> colour_at;  ///< colour pattern at a rest position, multiplied with the
+                                                       ///< albedo too; empty: none. Called from several threads.
   Material material;
   Wireframe wireframe;
   bool flat = false;  ///< shade with face normals

@@ -69,7 +69,7 @@ float highlight(const Vector3f& n, const Vector3f& view, const Vector3f& l, cons
 
 }  // namespace
 
-Visibility trace_visibility(const ShadingContext& c, const SurfacePoint& p, int pattern) {
+Visibility trace_visibility(const ShadingContext& c, const ShadedPoint& p, int pattern) {
   Visibility seen;
   const float step = 1e-4F * c.rays->size();
   const Vector3f origin = p.smooth_position + p.face_normal * step;
@@ -113,7 +113,7 @@ Visibility trace_visibility(const ShadingContext& c, const SurfacePoint& p, int 
   return seen;
 }
 
-Vector3f radiance(const ShadingContext& c, const SurfacePoint& p, const Vector3f& direction, const Visibility& seen,
+Vector3f radiance(const ShadingContext& c, const ShadedPoint& p, const Vector3f& direction, const Visibility& seen,
                   float footprint) {
   const Material& m = p.surface->material;
   const Vector3f view = -direction;

@@ -32,10 +32,10 @@ struct ShadingContext {
 };
 
 /// Traces visibility at a point. `pattern`, 0 to 255, selects the sample pattern.
-Visibility trace_visibility(const ShadingContext& context, const SurfacePoint& point, int pattern);
+Visibility trace_visibility(const ShadingContext& context, const ShadedPoint& point, int pattern);
 
 /// Radiance towards the viewer (before the tone curve), linear RGB. `direction`: unit, from the viewer.
-Vector3f radiance(const ShadingContext& context, const SurfacePoint& point, const Vector3f& direction,
+Vector3f radiance(const ShadingContext& context, const ShadedPoint& point, const Vector3f& direction,
                   const Visibility& visibility, float footprint);
 
 /// The tone curve: the identity up to a shoulder, then a smooth approach to 1. And its inverse.

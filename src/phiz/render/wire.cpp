@@ -5,7 +5,7 @@
 
 namespace phiz::detail {
 
-float wire_coverage(const Lens& lens, const SurfacePoint& point, float x, float y) {
+float wire_coverage(const Lens& lens, const ShadedPoint& point, float x, float y) {
   const TracedSurface& s = *point.surface;
   const unsigned edges = s.wireframe.edges.empty() ? 7U : s.wireframe.edges[point.triangle];
   const auto& t = s.triangle[point.triangle];

@@ -8,6 +8,6 @@
 namespace phiz::detail {
 
 /// How much of the line of the nearest drawn edge of the hit triangle covers pixel position (x, y), in [0, 1].
-float wire_coverage(const Lens& lens, const SurfacePoint& point, float x, float y);
+float wire_coverage(const Lens& lens, const ShadedPoint& point, float x, float y);
 
 }  // namespace phiz::detail

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "phiz/render/head_quantities.h"
+
+#include <fmt/format.h>
+
+#include "phiz/core/error.h"
+#include "phiz/geometry/spatial_query.h"
+#include "phiz/geometry/surface.h"
+#include "phiz/geometry/topology.h"
+
+namespace phiz {
+
+namespace {
+
+constexpr double millimetres = 1000;
+
+void check(const Take& take, const TakeFrame& frame) {
+  if (frame.skin.rows() != take.skin.V.rows())
+    reject("take", fmt::format("a frame has {} skin vertices, the skin {}", frame.skin.rows(), take.skin.V.rows()),
+           "animate again");
+}
+
+VectorXd vertex_areas(const MatrixX3d& V, const MatrixX3i& F) {
+  const VectorXd area = triangle_areas(V, F);
+  VectorXd sum = VectorXd::Zero(V.rows());
+  for (Eigen::Index f = 0; f < F.rows(); ++f)
+    for (int k = 0; k < 3; ++k) sum[F(f, k)] += area[f] / 3;
+  return sum;
+}
+
+}  // namespace
+
+VectorXd skin_displacement(const Take& take, const TakeFrame& frame) {
+  check(take, frame);
+  return millimetres * (frame.skin.cast<double>() - take.skin.V).rowwise().norm();
+}
+
+VectorXd skin_speed(const Take& take, std::size_t frame) {
+  if (frame >= take.frames.size()) reject("take", fmt::format("there is no frame {}", frame));
+  check(take, take.frames[frame]);
+  if (frame == 0) return VectorXd::Zero(take.skin.V.rows());
+  const TakeFrame &now = take.frames[frame], &before = take.frames[frame - 1];
+  check(take, before);
+  const double dt = now.time - before.time;
+  if (!(dt > 0)) return VectorXd::Zero(take.skin.V.rows());
+  return millimetres / dt * (now.skin - before.skin).cast<double>().rowwise().norm();
+}
+
+VectorXd skin_stretch(const Take& take, const TakeFrame& frame) {
+  check(take, frame);
+  const VectorXd rest = vertex_areas(take.skin.V, take.skin.F),
+                 now = vertex_areas(frame.skin.cast<double>(), take.skin.F);
+  return rest.binaryExpr(now, [](double r, double n) { return r > 0 ? 100 * (n / r - 1) : 0.0; });
+}
+
+VectorXd flesh_thickness(const HeadTemplate& head) {
+  const MatrixX3i skull = region_boundary(head.volume, Tissue::skull),
+                  mandible = region_boundary(head.volume, Tissue::mandible);
+  MatrixX3i bones(skull.rows() + mandible.rows(), 3);
+  bones << skull, mandible;
+  const SurfaceQuery query(head.volume.V, bones);
+  const auto nearest = query.closest_points(head.skin.V);
+  VectorXd thickness(head.skin.V.rows());
+  for (Eigen::Index i = 0; i < thickness.size(); ++i)
+    thickness[i] = millimetres * std::sqrt(nearest[static_cast<std::size_t>(i)].squared_distance);
+  return thickness;
+}
+
+}  // namespace phiz

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Scenes of a head: from its template, or from a frame of a take.
+#pragma once
+
+#include <optional>
+
+#include "phiz/anatomy/head_template.h"
+#include "phiz/face/take.h"
+#include "phiz/render/camera.h"
+#include "phiz/render/cut.h"
+#include "phiz/render/heat_map.h"
+#include "phiz/render/scene.h"
+
+namespace phiz {
+
+enum class HeadStyle {
+  clay,       ///< grey skin, for judging form
+  skin,       ///< skin colours; lips, brows and the like where the template's regions are known
+  wireframe,  ///< clay with the edges of the mesh; diagonals of quads are left out
+  anatomy,    ///< bones, teeth, eyes and muscles under translucent skin
+  bones,      ///< without the skin
+  cutaway,    ///< cut by a plane, the cut coloured by tissue
+  heat,       ///< HeadViewOptions::values as colours
+};
+
+/// "clay", "skin", ... Throws phiz::Error(usage) naming the known ones.
+HeadStyle head_style(std::string_view name);
+
+struct HeadViewOptions {
+  HeadStyle style = HeadStyle::clay;
+  /// Cutaway: the plane in the head frame; what lies on the side of its normal is taken away.
+  CutPlane plane{Vector3d(0.004, 0, 0), Vector3d::UnitX()};
+  bool cut_tets = false;    ///< cutaway: draw the outlines of the tets in the cut
+  VectorXd values;          ///< heat: one number per vertex of the drawn skin
+  HeatScale scale;          ///< heat: what its colours mean
+  bool still_head = false;  ///< leave out the head's motion: for close-ups of a take
+};
+
+/// The head at rest.
+Scene head_scene(const HeadTemplate& head, const HeadViewOptions& options);
+
+/// A frame of a take. With the head that it was made with, the skin gets its colours and cut-aways show tissue
+/// (deformed where the frame holds TakeFrame::volume). Throws phiz::Error(bad_input) when head and take disagree.
+Scene head_scene(const Take& take, const TakeFrame& frame, const HeadViewOptions& options,
+                 const HeadTemplate* head = nullptr);
+
+/// Face points for framing, from landmarks and eyes.
+FacePoints face_points(const HeadTemplate& head);
+FacePoints face_points(const Take& take);
+
+/// The camera for a view of the head at rest, or of a whole take: whole-head views leave room for all of its motion.
+Camera head_camera(const HeadTemplate& head, View view, int width, int height);
+Camera take_camera(const Take& take, View view, int width, int height);
+
+/// True for views of a detail; they are rendered with HeadViewOptions::still_head so that the detail stays in place.
+bool is_close_up(View view);
+
+}  // namespace phiz
