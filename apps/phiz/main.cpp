@@ -42,6 +42,7 @@ int run(int argc, char** argv) {
     phiz::Progress::set_quiet(quiet);
     phiz::catch_interrupts();
   });
+  phiz::add_template(app);
 
   try {
     app.parse(argc, argv);
