@@ -177,6 +177,11 @@ double ContactScene::penetration(const PositionView& positions) const {
   return depth.empty() ? 0.0 : *std::max_element(depth.begin(), depth.end());
 }
 
+double ContactScene::penetration(const MatrixX3d& x) const {
+  const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> rows = x;
+  return penetration(PositionView{rows.data(), 3, nullptr});
+}
+
 int ContactScene::left_out() const {
   return state_->left_out;
 }

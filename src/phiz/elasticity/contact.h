@@ -66,6 +66,7 @@ class ContactScene {
 
   /// Deepest penetration over all pairs, metres, >= 0, by a search of every vertex that keeps no state.
   double penetration(const PositionView& positions) const;
+  double penetration(const MatrixX3d& x) const;
 
   /// Vertices left out because they are inside of their obstacle in the rest state.
   int left_out() const;

@@ -185,13 +185,14 @@ SolveStatistics Descent::run(double* x) {
 
     // Armijo's rule on the energy minus the work of the contact forces, which falls along p also out of penetrations. A
     // plain local/global step (no pairs) fulfils it by construction: the factor bounds the energy from above.
+    const double rounding = 1e-13 * std::abs(energy) + system_.smallest_energy;
     double next_energy = energy;
     bool accepted = false;
     for (int halving = 0; halving < 12 && std::isfinite(reach); ++halving) {
       for (std::ptrdiff_t i = 0; i < size; ++i)
         trial[static_cast<std::size_t>(i)] = x[i] + alpha * p[static_cast<std::size_t>(i)];
       next_energy = system_.evaluate(trial.get(), next_g.get(), system_.free);
-      if (next_energy - alpha * contact_work <= energy - 1e-4 * alpha * decrease + 1e-13 * std::abs(energy)) {
+      if (next_energy - alpha * contact_work <= energy - 1e-4 * alpha * decrease + rounding) {
         accepted = true;
         break;
       }
@@ -223,9 +224,9 @@ SolveStatistics Descent::run(double* x) {
     statistics.contacts = static_cast<int>((lambda_.array() > 0).count());
     contact = detect(x);
     statistics.penetration = deepest(contact);
-    statistics.residual /= std::max(system_.force_scale(), 1e-300);
-    statistics.converged = statistics.last_step <= options_.step_tolerance &&
-                           statistics.residual <= options_.residual_tolerance &&
+    const bool small_step = statistics.last_step <= options_.step_tolerance;
+    if (small_step || statistics.iterations == options_.max_iterations) statistics.residual /= system_.force_scale();
+    statistics.converged = small_step && statistics.residual <= options_.residual_tolerance &&
                            statistics.penetration <= options_.penetration_tolerance;
     if (statistics.converged && statistics.iterations >= options_.min_iterations) break;
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "phiz/core/error.h"
 #include "phiz/core/parallel.h"
@@ -37,6 +38,28 @@ void check(const ElasticBody& body) {
     reject("elastic body", "dynamics needs a mass per vertex and a positive time step");
 }
 
+/// Fails if a piece of connected vertices has nothing to hold it. `anchored`: per vertex.
+void check_anchors(const ElasticBody& body, std::vector<char> anchored) {
+  std::vector<int> parent(anchored.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&parent](int v) {
+    while (parent[static_cast<std::size_t>(v)] != v)
+      v = parent[static_cast<std::size_t>(v)] = parent[static_cast<std::size_t>(parent[static_cast<std::size_t>(v)])];
+    return v;
+  };
+  for (Eigen::Index t = 0; t < body.tets.rows(); ++t)
+    for (int c = 1; c < 4; ++c) {
+      const int a = root(body.tets(t, 0)), b = root(body.tets(t, c));
+      parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    }
+  for (std::size_t v = 0; v < anchored.size(); ++v)
+    if (anchored[v]) anchored[static_cast<std::size_t>(root(static_cast<int>(v)))] = 1;
+  for (Eigen::Index t = 0; t < body.tets.rows(); ++t)
+    if (!anchored[static_cast<std::size_t>(root(body.tets(t, 0)))])
+      fail("the piece of flesh with tet " + std::to_string(t) + " hangs on nothing",
+           "every connected piece must touch a fixed vertex, carry an attachment or have mass");
+}
+
 }  // namespace
 
 ElasticSystem::ElasticSystem(const ElasticBody& body, const VectorXi& contact_vertices)
@@ -54,6 +77,10 @@ ElasticSystem::ElasticSystem(const ElasticBody& body, const VectorXi& contact_ve
     inertia_of = body.mass / (body.time_step * body.time_step);
     diagonal += inertia_of;
   }
+  std::vector<char> anchored = body.fixed;
+  for (std::size_t v = 0; v < anchored.size(); ++v)
+    if (diagonal[static_cast<Eigen::Index>(v)] > 0) anchored[v] = 1;
+  check_anchors(body, std::move(anchored));
   std::vector<int> free_vertices, others;
   for (int v = 0; v < vertices; ++v)
     (used[static_cast<std::size_t>(v)] && !body.fixed[static_cast<std::size_t>(v)] ? free_vertices : others)
@@ -83,7 +110,10 @@ ElasticSystem::ElasticSystem(const ElasticBody& body, const VectorXi& contact_ve
     row_of[free_vertices[static_cast<std::size_t>(order[i])]] = static_cast<int>(i);
   std::vector<int> permuted(static_cast<std::size_t>(vertices), -1);
   for (const int v : free_vertices) permuted[static_cast<std::size_t>(v)] = row_of[v];
-  solver = std::make_unique<VertexSolver>(restrict_to(permuted));
+  const SparseMatrixd system = restrict_to(permuted);
+  smallest_force = 1e-6 * system.diagonal().norm();
+  smallest_energy = 0.5e-18 * system.diagonal().sum();
+  solver = std::make_unique<VertexSolver>(system);
   for (std::size_t i = 0; i < others.size(); ++i)
     row_of[others[i]] = static_cast<int>(free + static_cast<std::ptrdiff_t>(i));
   for (Attachment& a : attachments) a.vertex = row_of[a.vertex];
@@ -193,19 +223,21 @@ double ElasticSystem::evaluate(const double* x, double* gradient, std::ptrdiff_t
 }
 
 double ElasticSystem::force_scale() const {
-  return std::sqrt(parallel_sum(free, row_grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    double sum = 0;
-    for (std::ptrdiff_t r = begin; r < end; ++r) {
-      double magnitude = 0;
-      for (int i = incidence_start[static_cast<std::size_t>(r)]; i < incidence_start[static_cast<std::size_t>(r) + 1];
-           ++i)
-        magnitude += Eigen::Map<const Vector3d>(corner_gradient.get() +
-                                                4 * static_cast<std::ptrdiff_t>(incidence[static_cast<std::size_t>(i)]))
-                         .norm();
-      sum += magnitude * magnitude;
-    }
-    return sum;
-  }));
+  return std::max(
+      smallest_force, std::sqrt(parallel_sum(free, row_grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+        double sum = 0;
+        for (std::ptrdiff_t r = begin; r < end; ++r) {
+          double magnitude = 0;
+          for (int i = incidence_start[static_cast<std::size_t>(r)];
+               i < incidence_start[static_cast<std::size_t>(r) + 1]; ++i)
+            magnitude +=
+                Eigen::Map<const Vector3d>(corner_gradient.get() +
+                                           4 * static_cast<std::ptrdiff_t>(incidence[static_cast<std::size_t>(i)]))
+                    .norm();
+          sum += magnitude * magnitude;
+        }
+        return sum;
+      })));
 }
 
 }  // namespace phiz

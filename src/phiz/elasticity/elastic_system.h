@@ -34,12 +34,15 @@ struct ElasticSystem {
   std::vector<int> incidence_start, incidence;  ///< kernel outputs (in doubles / 4) that add up at each row
   AlignedVector corner_gradient;                ///< what the kernel writes
   double rest_volume = 0;
+  double smallest_force = 0;   ///< root of the sum of squares of what moves each vertex alone by a micrometre, newtons
+  double smallest_energy = 0;  ///< of moving each vertex alone by a nanometre, joules
 
   void load(const MatrixX3d& positions, double* x) const;
   void store(const double* x, MatrixX3d& positions) const;
   /// Energy; gradient at the first `rows` rows (4 x rows doubles).
   double evaluate(const double* x, double* gradient, std::ptrdiff_t rows);
-  /// Root of the sum over free rows of (sum of the norms of the tets' forces)^2, after evaluate().
+  /// What a force residual is measured against, after evaluate(): root of the sum over free rows of (sum of the norms
+  /// of the forces of its tets)^2, at least smallest_force.
   double force_scale() const;
 };
 

@@ -122,8 +122,8 @@ HWY_INLINE void unimodular(const Lane* F, Lane* P) {
       E[k] = next;
       P[k] = hn::Add(F[k], next);
     }
-    done = hn::AllTrue(d, hn::Or(bad, hn::Lt(change, hn::Set(d, 1e-22))));
-    if (i == 19 && !done) bad = hn::Or(bad, hn::Not(hn::Lt(change, hn::Set(d, 1e-22))));
+    done = hn::AllTrue(d, hn::Or(bad, hn::Lt(change, hn::Set(d, 1e-18))));
+    if (i == 19 && !done) bad = hn::Or(bad, hn::Not(hn::Lt(change, hn::Set(d, 1e-18))));
   }
   if (!hn::AllFalse(d, bad)) repair(bad, F, P, [](const Matrix3d& A) { return nearest_unimodular(A); });
 }
