@@ -36,16 +36,6 @@ bool rotate_columns(Matrix3d& B, Matrix3d& V, int p, int q) {
   return true;
 }
 
-/// Root of f, negative at `low` and not negative at `high`, to the resolution of the machine.
-template <class Function>
-double bisect(Function&& f, double low, double high) {
-  for (;;) {
-    const double middle = low + 0.5 * (high - low);
-    if (middle <= std::min(low, high) || middle >= std::max(low, high)) return middle;
-    (f(middle) < 0 ? low : high) = middle;
-  }
-}
-
 /// Values of product 1 as a function of the last one, t: the stationary points with p0, p1 on the larger root of
 /// p (p - s) = mu, mu = t (t - s2). At a minimum only one value can be on the smaller root, and that is the last.
 struct UnimodularFamily {
@@ -59,11 +49,26 @@ struct UnimodularFamily {
     return {larger_root(s[0]), larger_root(s[1]), t};
   }
   /// Negative where the product is below 1.
-  double excess(double t) const {
-    const Vector3d p = at(t);
-    return p[0] * p[1] * p[2] - 1;
-  }
+  double excess(double t) const { return at(t).prod() - 1; }
   double squared_distance(double t) const { return (at(t) - s).squaredNorm(); }
+
+  /// Root of the excess, which is negative at `low` and not at `high`: Newton on log(product) over log(t), else
+  /// bisection.
+  double root(double low, double high) const {
+    double t = high;
+    for (int i = 0; i < 200; ++i) {
+      const Vector3d p = at(t);
+      const double product = p.prod();
+      (product < 1 ? low : high) = t;
+      const double slope = 2 * t - s[2];
+      const double relative = 1 + t * slope / (p[0] * (2 * p[0] - s[0])) + t * slope / (p[1] * (2 * p[1] - s[1]));
+      double next = t * std::exp(-std::log(product) / relative);
+      if (!(next > low && next < high)) next = low + 0.5 * (high - low);
+      if (std::abs(next - t) <= 2 * epsilon * t || next <= low || next >= high) return next;
+      t = next;
+    }
+    return t;
+  }
 };
 
 }  // namespace
@@ -108,29 +113,22 @@ Matrix3d closest_rotation(const Matrix3d& A) {
 
 Vector3d closest_unimodular_values(const Vector3d& s) {
   const UnimodularFamily family{s};
-  const auto excess = [&family](double t) { return family.excess(t); };
   const double turning = std::max(0.5 * s[2], 0.0);  // below it the last value is on its smaller root
-  double best = std::numeric_limits<double>::quiet_NaN();
-  if (excess(turning) < 0) {
-    double high = std::max(1.0, 2 * turning);
-    while (excess(high) < 0) high *= 2;
-    best = bisect(excess, turning, high);
+  if (turning > 0 && family.excess(turning) >= 0) return family.at(family.root(0, turning));
+  double high = std::max(1.0, 2 * turning);
+  while (family.excess(high) < 0) high *= 2;
+  const double middling = family.root(turning, high);
+  if (s.prod() < 3) return family.at(middling);
+  // Far from 1 a single small value can be nearer than three middling ones: the product may peak below the turning
+  // point.
+  double low = 0, peak = turning;
+  for (int i = 0; i < 40; ++i) {
+    const double a = low + 0.382 * (peak - low), b = low + 0.618 * (peak - low);
+    (family.excess(a) < family.excess(b) ? low : peak) = family.excess(a) < family.excess(b) ? a : b;
   }
-  if (turning > 0) {
-    // Far from 1 a single small value can be nearer than three middling ones. The product rises to one peak and falls
-    // again.
-    double low = 0, high = turning;
-    for (int i = 0; i < 80; ++i) {
-      const double a = low + 0.382 * (high - low), b = low + 0.618 * (high - low);
-      (excess(a) < excess(b) ? low : high) = excess(a) < excess(b) ? a : b;
-    }
-    const double peak = excess(turning) >= 0 && excess(low) < 0 ? turning : low;
-    if (excess(peak) >= 0) {
-      const double root = bisect(excess, 0.0, peak);
-      if (std::isnan(best) || family.squared_distance(root) < family.squared_distance(best)) best = root;
-    }
-  }
-  return family.at(best);
+  if (family.excess(peak) < 0) return family.at(middling);
+  const double small = family.root(0, peak);
+  return family.at(family.squared_distance(small) < family.squared_distance(middling) ? small : middling);
 }
 
 Matrix3d closest_unimodular(const Matrix3d& A) {
