@@ -28,6 +28,9 @@ void check(const ElasticBody& body) {
     reject("elastic body", "a tet names a vertex that does not exist");
   if (!(body.stiffness.minCoeff() > 0) || !body.stiffness.allFinite())
     reject("elastic body", "stiffness must be positive");
+  if (body.target_share.size() > 0 &&
+      (body.target_share.size() != body.tets.rows() || !(body.target_share.minCoeff() >= 0)))
+    reject("elastic body", "needs one target share per tet, not negative");
   const double least = std::min({body.weights.target, body.weights.shape, body.weights.volume});
   if (!(least >= 0) || !(body.weights.target + body.weights.shape + body.weights.volume > 0))
     reject("elastic body", "term weights must not be negative, nor all zero");
@@ -66,8 +69,9 @@ ElasticSystem::ElasticSystem(const ElasticBody& body, const VectorXi& contact_ve
     : vertices(body.rest.rows()), weights(body.weights), attachments(body.attachments) {
   check(body);
   // Quadratic part: 2 sum_w (weights) stiffness V G^T G + 2 attachments + M / h^2, over the free vertices.
-  const double total = weights.target + weights.shape + weights.volume;
-  SparseMatrixd A = tet_laplacian(body.rest, body.tets, 2 * total * body.stiffness);
+  const VectorXd share = body.target_share.size() > 0 ? body.target_share : VectorXd::Ones(body.tets.rows());
+  const VectorXd total = (weights.shape + weights.volume + weights.target * share.array()).matrix();
+  const SparseMatrixd A = tet_laplacian(body.rest, body.tets, 2 * total.cwiseProduct(body.stiffness));
   std::vector<char> used(static_cast<std::size_t>(vertices), 0);
   for (Eigen::Index i = 0; i < body.tets.size(); ++i) used[static_cast<std::size_t>(body.tets.data()[i])] = 1;
   VectorXd diagonal = VectorXd::Zero(vertices);
@@ -131,16 +135,17 @@ ElasticSystem::ElasticSystem(const ElasticBody& body, const VectorXi& contact_ve
   std::stable_sort(sequence.begin(), sequence.end(),
                    [&](int a, int b) { return rows.row(a).minCoeff() < rows.row(b).minCoeff(); });
   MatrixX4i sorted(rows.rows(), 4);
-  VectorXd stiffness(rows.rows());
+  VectorXd stiffness(rows.rows()), sorted_share(rows.rows());
   slot_of.resize(sequence.size());
   for (std::size_t s = 0; s < sequence.size(); ++s) {
     sorted.row(static_cast<Eigen::Index>(s)) = rows.row(sequence[s]);
     stiffness[static_cast<Eigen::Index>(s)] = body.stiffness[sequence[s]];
+    sorted_share[static_cast<Eigen::Index>(s)] = share[sequence[s]];
     slot_of[static_cast<std::size_t>(sequence[s])] = static_cast<std::ptrdiff_t>(s);
   }
   MatrixX3d rest(vertices, 3);
   for (int v = 0; v < vertices; ++v) rest.row(row_of[v]) = body.rest.row(v);
-  elements = std::make_unique<ElementBlocks>(rest, sorted, stiffness);
+  elements = std::make_unique<ElementBlocks>(rest, sorted, stiffness, sorted_share);
   for (std::ptrdiff_t s = 0; s < elements->tets; ++s) rest_volume += elements->rest_volume[static_cast<std::size_t>(s)];
 
   incidence_start.assign(static_cast<std::size_t>(vertices) + 1, 0);

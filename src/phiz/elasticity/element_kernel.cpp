@@ -158,7 +158,7 @@ double EvaluateElements(const ElementBlocks& e, const TermWeights& w, const doub
       gradients(e, x, b, l, D9, F);
       Lane sum = hn::Zero(d);
 
-      const Lane target = hn::Set(d, w.target);
+      const Lane target = hn::Mul(hn::Set(d, w.target), hn::Load(d, e.target_share.get() + b * 8 + l));
       for (int k = 0; k < 9; ++k) {
         const Lane delta = hn::Sub(F[k], hn::Load(d, e.target.get() + (b * 9 + k) * 8 + l));
         P[k] = hn::Mul(target, delta);
@@ -238,12 +238,14 @@ namespace phiz {
 HWY_EXPORT(EvaluateElements);
 HWY_EXPORT(DeformedVolume);
 
-ElementBlocks::ElementBlocks(const MatrixX3d& rest, const MatrixX4i& tet_rows, const VectorXd& stiffness)
+ElementBlocks::ElementBlocks(const MatrixX3d& rest, const MatrixX4i& tet_rows, const VectorXd& stiffness,
+                             const VectorXd& share)
     : tets(tet_rows.rows()), blocks((tet_rows.rows() + width - 1) / width) {
   const auto count = static_cast<std::size_t>(blocks * width);
   inverse = hwy::AllocateAligned<double>(count * 9);
   weight = hwy::AllocateAligned<double>(count);
   rest_volume = hwy::AllocateAligned<double>(count);
+  target_share = hwy::AllocateAligned<double>(count);
   target = hwy::AllocateAligned<double>(count * 9);
   stretch = hwy::AllocateAligned<double>(count * 6);
   vertex = hwy::AllocateAligned<std::int32_t>(count * 4);
@@ -259,6 +261,7 @@ ElementBlocks::ElementBlocks(const MatrixX3d& rest, const MatrixX4i& tet_rows, c
     for (int c = 0; c < 4; ++c) vertex[static_cast<std::size_t>((b * 4 + c) * width + l)] = tet_rows(t, c);
     const double volume = slot < tets ? edges.determinant() / 6 : 0.0;
     rest_volume[static_cast<std::size_t>(slot)] = volume;
+    target_share[static_cast<std::size_t>(slot)] = share.size() > 0 ? share[t] : 1.0;
     weight[static_cast<std::size_t>(slot)] = slot < tets ? volume * stiffness[t] : 0.0;
     for (int k = 0; k < 9; ++k) target[static_cast<std::size_t>((b * 9 + k) * width + l)] = k % 4 == 0 ? 1.0 : 0.0;
     for (int k = 0; k < 6; ++k) stretch[static_cast<std::size_t>((b * 6 + k) * width + l)] = k < 3 ? 1.0 : 0.0;

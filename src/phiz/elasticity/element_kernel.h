@@ -24,13 +24,15 @@ struct TermWeights {
 struct ElementBlocks {
   static constexpr std::ptrdiff_t width = 8;
 
-  ElementBlocks(const MatrixX3d& rest, const MatrixX4i& tets, const VectorXd& stiffness);
+  /// `target_share`: factor of the target term per tet; empty for one.
+  ElementBlocks(const MatrixX3d& rest, const MatrixX4i& tets, const VectorXd& stiffness, const VectorXd& target_share);
 
   std::ptrdiff_t tets = 0;
   std::ptrdiff_t blocks = 0;
   hwy::AlignedFreeUniquePtr<double[]> inverse;       ///< inverse of the rest edge matrix, 9
   hwy::AlignedFreeUniquePtr<double[]> weight;        ///< rest volume times stiffness, 1
   hwy::AlignedFreeUniquePtr<double[]> rest_volume;   ///< cubic metres, 1
+  hwy::AlignedFreeUniquePtr<double[]> target_share;  ///< factor of the target term, 1
   hwy::AlignedFreeUniquePtr<double[]> target;        ///< target deformation gradient, 9
   hwy::AlignedFreeUniquePtr<double[]> stretch;       ///< symmetric stretch of the shape term: xx, yy, zz, xy, xz, yz
   hwy::AlignedFreeUniquePtr<std::int32_t[]> vertex;  ///< vertex of each corner, 4

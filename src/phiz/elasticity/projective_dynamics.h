@@ -30,6 +30,7 @@ struct ElasticBody {
   std::vector<char> fixed;              ///< n: positions prescribed
   VectorXd stiffness;                   ///< shear scale per tet, pascals, > 0
   TermWeights weights;                  ///< of the terms, relative to `stiffness`
+  VectorXd target_share;                ///< factor of the target term per tet, >= 0; empty for one everywhere
   std::vector<Attachment> attachments;  ///< vertices and weights stay; points and normals may change later
   VectorXd mass;                        ///< n, kg; empty for statics
   double time_step = 0;                 ///< seconds of backward Euler; 0 for statics

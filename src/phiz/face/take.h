@@ -22,7 +22,7 @@ struct TakeFrame {
   Matrix3d right_eye = Matrix3d::Identity();
   VectorXd part_weights;  ///< weights of the expressions, for parts with shapes
   MatrixX3f volume;       ///< positions of HeadTemplate::volume.V, or empty
-  MatrixX3f velocity;                                          ///< world velocities of the same vertices, m/s; empty in static takes
+  MatrixX3f velocity;     ///< world velocities of the same vertices, m/s; empty in static takes
   SolveStatistics statistics;
 };
 

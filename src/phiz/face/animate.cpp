@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "phiz/face/animate.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "phiz/core/error.h"
+#include "phiz/core/progress.h"
+
+namespace phiz {
+
+namespace {
+
+bool same_name(const std::string& a, const std::string& b) {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](unsigned char x, unsigned char y) {
+           return std::tolower(x) == std::tolower(y);
+         });
+}
+
+int column_of(const Performance& performance, const std::string& name) {
+  for (std::size_t e = 0; e < performance.expressions.size(); ++e)
+    if (same_name(performance.expressions[e], name)) return static_cast<int>(e);
+  return -1;
+}
+
+int end_of(const Performance& performance, const AnimateOptions& options) {
+  const int frames = static_cast<int>(performance.time.size());
+  const int end = options.end_frame < 0 ? frames : options.end_frame;
+  if (options.first_frame < 0 || options.first_frame >= end || end > frames)
+    throw Error(ErrorKind::usage, "frames " + std::to_string(options.first_frame) + " to " + std::to_string(end) +
+                                      " are not in the performance, which has " + std::to_string(frames));
+  return end;
+}
+
+Eigen::Isometry3d head_pose(const Performance& performance, Eigen::Index frame, const Vector3d& pivot) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = rotation_from_angles(performance.head.row(frame));
+  pose.translation() = pivot - pose.linear() * pivot;
+  return pose;
+}
+
+}  // namespace
+
+ExpressionMatch match_expressions(const FaceModel& model, const Performance& performance) {
+  ExpressionMatch match;
+  std::vector<char> used(performance.expressions.size(), 0);
+  for (const VolumetricShape& shape : model.shapes) {
+    const int column = column_of(performance, shape.name);
+    match.column.push_back(column);
+    if (column >= 0)
+      used[static_cast<std::size_t>(column)] = 1;
+    else
+      match.undriven.push_back(shape.name);
+  }
+  for (std::size_t e = 0; e < used.size(); ++e)
+    if (!used[e]) match.unmatched.push_back(performance.expressions[e]);
+  return match;
+}
+
+VectorXd shape_weights(const ExpressionMatch& match, const Performance& performance, Eigen::Index frame) {
+  VectorXd weights(static_cast<Eigen::Index>(match.column.size()));
+  for (Eigen::Index m = 0; m < weights.size(); ++m) {
+    const int column = match.column[static_cast<std::size_t>(m)];
+    weights[m] = column >= 0 ? performance.weights(frame, column) : 0.0;
+  }
+  return weights;
+}
+
+std::pair<Matrix3d, Matrix3d> eye_rotations(const Performance& performance, Eigen::Index frame) {
+  if (!performance.left_eye.isZero(0) || !performance.right_eye.isZero(0))
+    return {rotation_from_angles(performance.left_eye.row(frame)),
+            rotation_from_angles(performance.right_eye.row(frame))};
+  // A full eyeLook weight is taken for the usual range of the eye: 35 degrees aside, 30 up, 35 down.
+  const auto weight = [&](const char* name) {
+    const int column = column_of(performance, name);
+    return column >= 0 ? performance.weights(frame, column) : 0.0;
+  };
+  constexpr double degree = 3.14159265358979323846 / 180;
+  const auto eye = [&](const char* toward_left, const char* toward_right, const char* down, const char* up) {
+    const double yaw = 35 * degree * (weight(toward_left) - weight(toward_right));
+    const double pitch = degree * (35 * weight(down) - 30 * weight(up));
+    return rotation_from_angles({yaw, pitch, 0});
+  };
+  return {eye("eyeLookOutLeft", "eyeLookInLeft", "eyeLookDownLeft", "eyeLookUpLeft"),
+          eye("eyeLookInRight", "eyeLookOutRight", "eyeLookDownRight", "eyeLookUpRight")};
+}
+
+Take empty_take(const FaceModel& model, const Performance& performance, const AnimateOptions& options) {
+  Take take;
+  take.model = model.head.name;
+  take.frame_rate = performance.frame_rate;
+  take.skin = model.head.skin;
+  take.parts = model.head.parts;
+  take.joint = model.head.jaw;
+  take.left_eye_centre = model.head.left_eye_centre;
+  take.right_eye_centre = model.head.right_eye_centre;
+  for (const VolumetricShape& shape : model.shapes) take.expressions.push_back(shape.name);
+  take.frames_planned = end_of(performance, options) - options.first_frame;
+  return take;
+}
+
+void animate(const FaceModel& model, const Performance& performance, const AnimateOptions& options,
+             const std::vector<TakeFrame>& finished, const FrameCallback& on_frame) {
+  validate(performance, "performance");
+  const int end = end_of(performance, options);
+  const ExpressionMatch match = match_expressions(model, performance);
+  Simulation simulation(model, options.simulation);
+  const bool dynamic = options.simulation.dynamic;
+  int next = options.first_frame;
+  if (!finished.empty()) {
+    const TakeFrame& last = finished.back();
+    next += static_cast<int>(finished.size());
+    if (next > end) reject("take", "has more frames than were asked for");
+    if (last.volume.rows() == 0)
+      reject("take", "its last frame does not hold the volume that is needed to resume", "start anew");
+    simulation.restore({last.volume.cast<double>(), last.velocity.cast<double>(),
+                        shape_weights(match, performance, next - 1),
+                        head_pose(performance, next - 1, options.head_pivot)});
+  } else if (dynamic) {
+    // Start at rest in the pose of the first frame, held by a static solve.
+    SimulationOptions still = options.simulation;
+    still.dynamic = false;
+    Simulation start(model, still);
+    const VectorXd weights = shape_weights(match, performance, next);
+    start.solve_static(weights);
+    SimulationState state = start.state();
+    state.velocity = MatrixX3d::Zero(state.positions.rows(), 3);
+    state.head = head_pose(performance, next, options.head_pivot);
+    simulation.restore(state);
+  }
+  for (; next < end && !interrupted(); ++next) {
+    TakeFrame frame;
+    frame.time = performance.time[next];
+    frame.part_weights = shape_weights(match, performance, next);
+    frame.head = head_pose(performance, next, options.head_pivot);
+    std::tie(frame.left_eye, frame.right_eye) = eye_rotations(performance, next);
+    if (dynamic) {
+      const double dt = next > options.first_frame ? performance.time[next] - performance.time[next - 1]
+                                                   : 1.0 / performance.frame_rate;
+      frame.statistics = simulation.step(dt, frame.part_weights, frame.head);
+      frame.velocity = simulation.state().velocity.cast<float>();
+    } else {
+      frame.statistics = simulation.solve_static(frame.part_weights);
+    }
+    frame.jaw = simulation.jaw();
+    frame.skin = simulation.skin().cast<float>();
+    frame.volume = simulation.positions().cast<float>();
+    if (!on_frame(frame, next)) break;
+  }
+}
+
+Take animate(const FaceModel& model, const Performance& performance, const AnimateOptions& options,
+             const FrameCallback& on_frame) {
+  Take take = empty_take(model, performance, options);
+  animate(model, performance, options, {}, [&](const TakeFrame& frame, int number) {
+    if (!options.keep_volume && !take.frames.empty()) {
+      take.frames.back().volume.resize(0, 3);
+      take.frames.back().velocity.resize(0, 3);
+    }
+    take.frames.push_back(frame);
+    return !on_frame || on_frame(frame, number);
+  });
+  return take;
+}
+
+}  // namespace phiz

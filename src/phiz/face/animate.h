@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Animate a face model by a performance.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "phiz/face/performance.h"
+#include "phiz/face/simulation.h"
+#include "phiz/face/take.h"
+
+namespace phiz {
+
+struct AnimateOptions {
+  SimulationOptions simulation;
+  int first_frame = 0;                              ///< of the performance
+  int end_frame = -1;                               ///< one past the last one; -1: all
+  Vector3d head_pivot = Vector3d(0, -0.03, -0.02);  ///< the head turns about this point, metres
+  bool keep_volume = false;                         ///< keep the volume of every frame, not only what resuming needs
+};
+
+/// How the columns of a performance meet the shapes of a model.
+struct ExpressionMatch {
+  std::vector<int> column;             ///< per shape: column of Performance::weights, or -1
+  std::vector<std::string> unmatched;  ///< expressions of the performance that the model does not have
+  std::vector<std::string> undriven;   ///< shapes of the model that the performance does not name
+};
+ExpressionMatch match_expressions(const FaceModel& model, const Performance& performance);
+
+/// Weights per shape in a frame.
+VectorXd shape_weights(const ExpressionMatch& match, const Performance& performance, Eigen::Index frame);
+
+/// Rotations of the eyes in a frame: those of the performance, or from its eyeLook weights if it records no rotation at
+/// all.
+std::pair<Matrix3d, Matrix3d> eye_rotations(const Performance& performance, Eigen::Index frame);
+
+/// A take with everything but the frames.
+Take empty_take(const FaceModel& model, const Performance& performance, const AnimateOptions& options = {});
+
+/// Called with each finished frame and its number in the performance; returns false to stop.
+using FrameCallback = std::function<bool(const TakeFrame& frame, int number)>;
+
+/// Plays the frames from `finished.size()` on, where `finished` are the first frames of an earlier run (its last one
+/// must hold `volume`), and calls `on_frame` for each. The result does not depend on where a run was interrupted. A
+/// frame that did not converge is the best state reached and says so. Stops early, without error, when interrupted() or
+/// when the callback says so.
+void animate(const FaceModel& model, const Performance& performance, const AnimateOptions& options,
+             const std::vector<TakeFrame>& finished, const FrameCallback& on_frame);
+
+/// The whole take at once. Its last frame holds what resuming needs.
+Take animate(const FaceModel& model, const Performance& performance, const AnimateOptions& options = {},
+             const FrameCallback& on_frame = {});
+
+}  // namespace phiz

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#undef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_RVV)  // the kernel keeps vectors in arrays
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "phiz/face/blend_kernel.cpp"
+#include "phiz/face/blend_kernel.h"
+
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace phiz {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+void BlendBlock(const float* entries, const int* shape, std::ptrdiff_t count, const float* weights, double* target,
+                double* stretch) {
+  HWY_ALIGN float sum[72];
+  {
+    const hn::CappedTag<float, 8> f;
+    for (std::size_t l = 0; l < 8; l += hn::Lanes(f)) {
+      hn::Vec<decltype(f)> s[9];
+      for (auto& part : s) part = hn::Zero(f);
+      for (std::ptrdiff_t e = 0; e < count; ++e) {
+        const auto w = hn::Set(f, weights[shape[e]]);
+        const float* entry = entries + e * 72 + l;
+        for (int k = 0; k < 9; ++k) s[k] = hn::MulAdd(w, hn::Load(f, entry + k * 8), s[k]);
+      }
+      for (int k = 0; k < 9; ++k) hn::Store(s[k], f, sum + k * 8 + l);
+    }
+  }
+  const hn::CappedTag<double, 8> d;
+  const hn::Rebind<float, decltype(d)> half;
+  const auto one = hn::Set(d, 1.0);
+  for (std::size_t l = 0; l < 8; l += hn::Lanes(d)) {
+    hn::Vec<decltype(d)> v[9];
+    for (int k = 0; k < 9; ++k) v[k] = hn::PromoteTo(d, hn::Load(half, sum + k * 8 + l));
+    // Quaternion of an eighth of the turn by series, normalised, then squared twice.
+    const auto eighth = hn::Set(d, 0.125);
+    const auto qx = hn::Mul(eighth, v[0]), qy = hn::Mul(eighth, v[1]), qz = hn::Mul(eighth, v[2]);
+    const auto h2 = hn::MulAdd(qx, qx, hn::MulAdd(qy, qy, hn::Mul(qz, qz)));
+    constexpr double cosine[] = {1, -1.0 / 2, 1.0 / 24, -1.0 / 720, 1.0 / 40320, -1.0 / 3628800, 1.0 / 479001600};
+    constexpr double sine[] = {1, -1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880, -1.0 / 39916800, 1.0 / 6227020800};
+    auto c = hn::Set(d, cosine[6]), s = hn::Set(d, sine[6]);
+    for (int k = 5; k >= 0; --k) {
+      c = hn::MulAdd(c, h2, hn::Set(d, cosine[k]));
+      s = hn::MulAdd(s, h2, hn::Set(d, sine[k]));
+    }
+    auto x = hn::Mul(s, qx), y = hn::Mul(s, qy), z = hn::Mul(s, qz), w = c;
+    const auto length2 = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::MulAdd(z, z, hn::Mul(w, w))));
+    const auto scale = hn::Div(one, hn::Sqrt(length2));
+    x = hn::Mul(x, scale);
+    y = hn::Mul(y, scale);
+    z = hn::Mul(z, scale);
+    w = hn::Mul(w, scale);
+    for (int twice = 0; twice < 2; ++twice) {
+      const auto doubled = hn::Add(w, w);
+      const auto v2 = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
+      w = hn::MulSub(w, w, v2);
+      x = hn::Mul(doubled, x);
+      y = hn::Mul(doubled, y);
+      z = hn::Mul(doubled, z);
+    }
+    const auto two = hn::Set(d, 2.0);
+    const auto xx = hn::Mul(x, x), yy = hn::Mul(y, y), zz = hn::Mul(z, z);
+    const auto xy = hn::Mul(x, y), xz = hn::Mul(x, z), yz = hn::Mul(y, z);
+    const auto wx = hn::Mul(w, x), wy = hn::Mul(w, y), wz = hn::Mul(w, z);
+    const hn::Vec<decltype(d)> R[9] = {hn::NegMulAdd(two, hn::Add(yy, zz), one),
+                                       hn::Mul(two, hn::Add(xy, wz)),
+                                       hn::Mul(two, hn::Sub(xz, wy)),
+                                       hn::Mul(two, hn::Sub(xy, wz)),
+                                       hn::NegMulAdd(two, hn::Add(xx, zz), one),
+                                       hn::Mul(two, hn::Add(yz, wx)),
+                                       hn::Mul(two, hn::Add(xz, wy)),
+                                       hn::Mul(two, hn::Sub(yz, wx)),
+                                       hn::NegMulAdd(two, hn::Add(xx, yy), one)};
+    const hn::Vec<decltype(d)> S[6] = {hn::Add(v[3], one), hn::Add(v[4], one), hn::Add(v[5], one), v[6], v[7], v[8]};
+    constexpr int at[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i)
+        hn::Store(hn::MulAdd(R[6 + i], S[at[2][j]], hn::MulAdd(R[3 + i], S[at[1][j]], hn::Mul(R[i], S[at[0][j]]))), d,
+                  target + (3 * j + i) * 8 + l);
+    for (int k = 0; k < 6; ++k) hn::Store(S[k], d, stretch + k * 8 + l);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace phiz
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace phiz {
+
+HWY_EXPORT(BlendBlock);
+
+void blend_block(const float* entries, const int* shape, std::ptrdiff_t count, const float* weights, double* target,
+                 double* stretch) {
+  HWY_DYNAMIC_DISPATCH(BlendBlock)(entries, shape, count, weights, target, stretch);
+}
+
+}  // namespace phiz
+#endif

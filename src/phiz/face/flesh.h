@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The flesh of a head as the elastic solver sees it.
+#pragma once
+
+#include "phiz/anatomy/head_template.h"
+#include "phiz/elasticity/projective_dynamics.h"
+
+namespace phiz {
+
+/// Flesh tets with at least one vertex that is free to move: rows of head.volume.T, ascending.
+VectorXi soft_tets(const HeadTemplate& head);
+
+/// The elastic body of the soft tets: bone vertices fixed, one stiffness everywhere (pascals), no attachments.
+ElasticBody flesh_body(const HeadTemplate& head, const VectorXi& soft, const TermWeights& weights, double stiffness);
+
+/// Sets the rows of vertices that move with skull or mandible to their places for a pose of the jaw.
+void place_bones(const HeadTemplate& head, const JawPose& pose, MatrixX3d& x);
+
+/// The pose within the limits of the joint.
+JawPose clamp_to_limits(const JawJoint& joint, const JawPose& pose);
+
+/// How far each vertex goes along with the jaw, in [0, 1]: harmonic in the flesh, 1 on the mandible, 0 on the skull.
+VectorXd jaw_share(const HeadTemplate& head, const VectorXi& soft);
+
+}  // namespace phiz
