@@ -8,11 +8,12 @@ namespace {
 
 constexpr int n = SkinTopology::ear_columns;
 
-/// Where the auricle leaves the head; millimetres in the head frame.
-constexpr double rim[n][3] = {{67.5, -20, -10},  {68.7, -13, -9.5},   {69.6, -7, -9.5},    {70.3, -1, -10},
-                              {70.8, 5, -11},    {71.2, 12, -12},     {71.7, 19, -14},     {72.2, 25, -17.5},
-                              {72.8, 28.5, -22}, {73, 28, -27},       {72.8, 23.5, -30.5}, {72, 16, -32},
-                              {71.3, 8, -32},    {70.5, -0.5, -30.5}, {69, -10, -27.5},    {68, -17.5, -19.5}};
+/// Where the auricle leaves the head, in its own plane (a backwards, b upwards) and the x of the head there;
+/// millimetres.
+constexpr double rim_a[n] = {0, -1.5, -1.5, -1.5, -1.5, -1.5, -0.5, 3.5, 9, 14.5, 19, 21, 20.5, 18.5, 14, 7};
+constexpr double rim_b[n] = {-21, -15, -9, -3, 3, 10, 18, 23.5, 26, 25.5, 20.5, 12.5, 4, -4.5, -13.5, -20};
+constexpr double rim_x[n] = {66.5, 67.7, 68.7, 69.5, 70.2, 70.7, 71.2, 71.8,
+                             72.3, 72.4, 72.2, 71.4, 70.6, 69.6, 68,   67};
 
 /// Points of the auricle in its own plane: a backwards, b upwards, h out from the head; millimetres. Columns as in
 /// SkinTopology: lobe's front, tragus (2..4), root of the helix (5), top (8), back (11), lobe (15).
@@ -23,9 +24,9 @@ struct EarRing {
 constexpr EarRing rings[] = {
     // Back of the auricle (columns 7 to 15), foot of the tragus (1 to 5).
     {1,
-     {0.5, -0.5, -0.5, -0.5, -0.5, -0.8, 0.5, 5, 12, 19.5, 25, 27, 25.5, 21.5, 15.5, 7.5},
-     {-20.5, -14, -8.5, -3, 3, 9, 17, 25, 29.5, 28.5, 22, 12.5, 1.5, -8, -17.5, -24},
-     {0.5, 0.6, 0.6, 0.6, 0.6, 0.6, 0.8, -1.5, -2.8, -3.2, -3.2, -3.2, -3.2, -3, -2.4, -1.2}},
+     {0.5, -0.5, -0.5, -0.5, -0.5, -0.8, 0.4, 4.2, 11, 18.5, 24.5, 27, 25.5, 21.5, 15.5, 7.5},
+     {-20.5, -14, -8.5, -3, 3, 9.5, 17.6, 24.6, 28.8, 28.5, 22, 12.5, 1.5, -8, -17.5, -24},
+     {0.5, 0.6, 0.6, 0.6, 0.6, 0.6, 0.9, 0.6, -1.5, -3.2, -3.2, -3.2, -3.2, -3, -2.4, -1.2}},
     // Rim of the helix.
     {2,
      {1.2, 0.3, 0.6, 1, 0.5, 0, 0.8, 4.5, 12, 21, 28, 30.5, 29, 24.5, 18, 8.5},
@@ -57,8 +58,6 @@ constexpr EarRing rings[] = {
 
 void place_ears(SkinForm& form, const IdentityParameters& identity) {
   const SkinTopology& topology = skin_topology();
-  for (int c = 0; c < n; ++c) form.place(topology.ear(0, c), {rim[c][0], rim[c][1], rim[c][2]}, 2);
-
   const double flare = (27 + 5 * identity.ear_flare) * M_PI / 180, tilt = 14 * M_PI / 180,
                size = 1 + 0.06 * identity.ear_size;
   const Vector3d up(0.04, std::cos(tilt), -std::sin(tilt));
@@ -69,6 +68,10 @@ void place_ears(SkinForm& form, const IdentityParameters& identity) {
   const auto point = [&](double a, double b, double h) -> Vector3d {
     return origin + size * (a * back + b * up + h * out);
   };
+  for (int c = 0; c < n; ++c) {
+    const Vector3d p = point(rim_a[c], rim_b[c], 0);
+    form.place(topology.ear(0, c), {rim_x[c], p.y(), p.z()}, 0.1);
+  }
   for (const EarRing& ring : rings)
     for (int c = 0; c < n; ++c) form.place(topology.ear(ring.ring, c), point(ring.a[c], ring.b[c], ring.h[c]), 20);
   for (int u = 1; u < 4; ++u)

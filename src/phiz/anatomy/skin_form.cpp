@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "phiz/anatomy/skin_form.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "phiz/core/error.h"
@@ -26,7 +29,49 @@ void SkinForm::place(int v, const Vector3d& p, double firmness) {
   weight[v] = weight[mirrored] = firmness;
 }
 
-void fair(SkinForm& form) {
+void SkinForm::keep_control(int v) {
+  on_limit[v] = on_limit[skin_topology().mirror(v)] = 0;
+}
+
+namespace {
+
+/// Thin-plate energy of the cage over the metric of the positions X (n x 3): the squared Laplacian integrated over the
+/// surface. The weights of an edge are the width of the faces beside it over its length. `areas` receives the area per
+/// vertex.
+Eigen::SparseMatrix<double> bending(const MatrixX3d& X, VectorXd& areas) {
+  const Eigen::Index n = X.rows();
+  std::vector<Eigen::Triplet<double>> entries;
+  areas = VectorXd::Constant(n, 1e-6);
+  for (const auto& face : skin_topology().faces()) {
+    const auto p = [&](int k) -> Vector3d { return X.row(face[k % 4]); };
+    const double area = 0.5 * (p(2) - p(0)).cross(p(3) - p(1)).norm();
+    for (int k = 0; k < 4; ++k) {
+      const int v = face[k], w = face[(k + 1) % 4];
+      const double length2 = 0.5 * ((p(k + 1) - p(k)).squaredNorm() + (p(k + 3) - p(k + 2)).squaredNorm());
+      const double conductance = std::clamp(0.5 * area / length2, 0.02, 20.0);
+      entries.emplace_back(v, v, conductance);
+      entries.emplace_back(w, w, conductance);
+      entries.emplace_back(v, w, -conductance);
+      entries.emplace_back(w, v, -conductance);
+      areas[v] += area / 4;
+    }
+  }
+  Eigen::SparseMatrix<double> K(n, n);
+  K.setFromTriplets(entries.begin(), entries.end());
+  const VectorXd inverse_areas = areas.cwiseMax(0.05).cwiseInverse();
+  return K.transpose() * inverse_areas.asDiagonal() * K;
+}
+
+/// The least of |bend x|^2 + sum_v pull_v |x_v - place_v|^2, for the three coordinates.
+MatrixX3d least_bending(Eigen::SparseMatrix<double> A, const VectorXd& pull, const MatrixX3d& places) {
+  for (Eigen::Index v = 0; v < pull.size(); ++v) A.coeffRef(v, v) += pull[v];
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(A);
+  if (solver.info() != Eigen::Success) fail("the skin's smoothing equations could not be solved");
+  return solver.solve(pull.asDiagonal() * places);
+}
+
+/// The graph Laplacian's energy, for a first guess without positions.
+Eigen::SparseMatrix<double> graph_bending() {
   const SkinTopology& topology = skin_topology();
   const int n = topology.vertex_count();
   std::vector<std::set<int>> neighbours(n);
@@ -42,26 +87,35 @@ void fair(SkinForm& form) {
   }
   Eigen::SparseMatrix<double> L(n, n);
   L.setFromTriplets(entries.begin(), entries.end());
-  Eigen::SparseMatrix<double> A = L.transpose() * L;
-  MatrixX3d b = MatrixX3d::Zero(n, 3);
-  for (int v = 0; v < n; ++v) {
-    A.coeffRef(v, v) += form.weight[v];
-    b.row(v) = form.weight[v] * form.X.row(v);
-  }
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(A);
-  if (solver.info() != Eigen::Success) fail("the skin's smoothing equations could not be solved");
-  form.X = solver.solve(b);
+  return L.transpose() * L;
+}
+
+void make_symmetric(MatrixX3d& X) {
+  const SkinTopology& topology = skin_topology();
   for (int v = 0; v < topology.left_count(); ++v) {
     const int w = topology.mirror(v);
     if (w == v) {
-      form.X(v, 0) = 0;
+      X(v, 0) = 0;
       continue;
     }
-    const Vector3d p(0.5 * (form.X(v, 0) - form.X(w, 0)), 0.5 * (form.X(v, 1) + form.X(w, 1)),
-                     0.5 * (form.X(v, 2) + form.X(w, 2)));
-    form.X.row(v) = p.transpose();
-    form.X.row(w) = Eigen::RowVector3d(-p.x(), p.y(), p.z());
+    const Vector3d p(0.5 * (X(v, 0) - X(w, 0)), 0.5 * (X(v, 1) + X(w, 1)), 0.5 * (X(v, 2) + X(w, 2)));
+    X.row(v) = p.transpose();
+    X.row(w) = Eigen::RowVector3d(-p.x(), p.y(), p.z());
   }
+}
+
+}  // namespace
+
+void fair(SkinForm& form) {
+  constexpr double smoothing_length = 3.0;  // millimetres: shorter waves of the places are ironed out
+  const MatrixX3d places = form.X;
+  const VectorXd firmness =
+      Eigen::Map<const VectorXd>(form.weight.data(), static_cast<Eigen::Index>(form.weight.size()));
+  form.X = least_bending(graph_bending(), 10 * firmness, places);
+  VectorXd areas;
+  const Eigen::SparseMatrix<double> A = bending(form.X, areas);
+  form.X = least_bending(A, firmness.cwiseProduct(areas) / std::pow(smoothing_length, 4), places);
+  make_symmetric(form.X);
 }
 
 }  // namespace phiz

@@ -18,6 +18,8 @@ struct SkinForm {
   /// Wants vertex v of the left half (and its mirror image) at p; the larger the weight, the firmer. Vertices without a
   /// place lie where the surface is smoothest.
   void place(int v, const Vector3d& p, double weight = 1);
+  /// The place of v (and of its mirror image) is meant for the control vertex, not for the limit surface.
+  void keep_control(int v);
   Vector3d at(int v) const { return X.row(v).transpose(); }
   bool placed(int v) const { return weight[v] > 0; }
 

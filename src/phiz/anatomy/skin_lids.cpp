@@ -16,7 +16,8 @@ constexpr double margin_x[n] = {-14.6, -11.6, -8.4, -4.6, -0.4, 4,    8,    11.2
 constexpr double margin_y[n] = {-1.6, 1.0, 3.0, 4.3, 4.7, 4.4, 3.4, 1.9, 0.5, -1.9, -3.8, -4.9, -5.3, -4.9, -3.9, -2.7};
 constexpr double margin_z[n] = {6.2, 6.8, 0, 0, 0, 0, 0, 0, 2.6, 0, 0, 0, 0, 0, 0, 6.6};  // least depth
 
-constexpr double clearance = 0.25;  // between eyeball and lid, millimetres
+constexpr double clearance = 0.25;      // between eyeball and lid, millimetres
+constexpr double back_clearance = 0.9;  // where nobody sees it
 constexpr double margin_width = 1.7;
 
 }  // namespace
@@ -52,29 +53,27 @@ void place_lids(SkinForm& form, const Proportions& proportions, const IdentityPa
     form.place(topology.eye(5, c), centre + outer_edge, 1e3);
     // Across the lid to the rim on the sheet: fraction of the way and distance from the eyeball's surface.
     const Vector3d rim = form.at(topology.eye(0, c)) - centre;
-    const double fraction[5] = {1, upper ? 0.82 : 0.76, upper ? 0.62 : 0.53, upper ? 0.46 : 0.36, upper ? 0.26 : 0.18};
-    const double height[5] = {0, 0, upper ? 4.6 : 4.6, upper ? 2.2 : 2.9, upper ? 2.3 : 2.3};
+    const double fraction[5] = {1, upper ? 0.77 : 0.76, upper ? 0.54 : 0.53, upper ? 0.40 : 0.36, upper ? 0.26 : 0.18};
+    const double height[5] = {0, 0, upper ? 4.9 : 4.6, upper ? 2.2 : 2.9, upper ? 2.3 : 2.3};
+    const double hug[5] = {0, 0, upper ? 0.15 : 0.6, upper ? 0.5 : 1,
+                           upper ? 0.75 : 1};  // how closely the lid follows the ball
     for (int ring = 1; ring <= 4; ++ring) {
-      const double s = fraction[ring];
-      Vector3d p = outer_edge + s * (rim - outer_edge);
-      if (ring >= 2) {
-        const double r = radius + height[ring], ball = r * r - p.x() * p.x() - p.y() * p.y();
-        const double on_ball = ball > 0 ? std::sqrt(ball) : 0.0;
-        p.z() += lid * (std::max(on_ball, 0.0) - p.z()) * (ring == 2 ? 0.6 : 1.0);
-      }
+      Vector3d p = outer_edge + fraction[ring] * (rim - outer_edge);
+      p += lid * hug[ring] * ((radius + height[ring]) * p.normalized() - p);
       const double r_min = radius + 2.0;
       if (p.norm() < r_min) p *= r_min / p.norm();
-      form.place(topology.eye(ring, c), centre + p, ring >= 3 ? 20 : 4);
+      form.place(topology.eye(ring, c), centre + p, ring >= 3 ? 20 : ring);
     }
-    // Socket: from the margin round the eyeball to the pole behind it.
+    // Socket: from the margin round the eyeball to the pole behind it. At the inner canthus the lining first runs over
+    // to the front of the eyeball: the caruncle.
+    const bool caruncle = c == 0 || c == 1 || c == n - 1;
     const Vector3d start = inner_edge.normalized();
     const Vector3d around = Vector3d(start.x(), start.y(), 0).normalized();
     const double angle0 = std::acos(std::clamp(start.z(), -1.0, 1.0));
     for (int ring = 7; ring <= 9; ++ring) {
-      constexpr double share[3] = {0.30, 0.58, 0.80};
-      const double angle = angle0 + share[ring - 7] * (M_PI - angle0);
-      const double r =
-          ring == 7 ? radius + 0.35 + 0.35 * std::max(0.0, inner_edge.norm() - radius - clearance) : radius + 0.5;
+      constexpr double share[3] = {0.28, 0.58, 0.80}, caruncle_angle[3] = {1.02, 1.72, 2.42};
+      const double angle = caruncle ? caruncle_angle[ring - 7] : angle0 + share[ring - 7] * (M_PI - angle0);
+      const double r = radius + (ring == 7 ? 0.5 : back_clearance);
       form.place(topology.eye(ring, c),
                  centre + r * Vector3d(std::sin(angle) * around.x(), std::sin(angle) * around.y(), std::cos(angle)),
                  1e4);
@@ -86,7 +85,7 @@ void place_lids(SkinForm& form, const Proportions& proportions, const IdentityPa
       p += (4 - u) * form.at(topology.socket(0, v)) + u * form.at(topology.socket(4, v));
       p += (4 - v) * form.at(topology.socket(u, 0)) + v * form.at(topology.socket(u, 4));
       const Vector3d direction = p / 8 - centre - Vector3d(0, 0, 0.2 * radius);
-      form.place(topology.socket(u, v), centre + (radius + 0.5) * direction.normalized(), 1e4);
+      form.place(topology.socket(u, v), centre + (radius + back_clearance) * direction.normalized(), 1e4);
     }
 }
 

@@ -7,6 +7,8 @@
 namespace phiz {
 namespace {
 
+constexpr double fold_depth =
+    3;  // control vertices of the folds lie this much deeper in the lip: the surface rounds them
 constexpr double wall_gap = 1.3;  // millimetres between teeth and the wall of the bag
 
 }  // namespace
@@ -18,9 +20,9 @@ void place_mouth_bag(SkinForm& form, const Proportions& proportions) {
   const double top = arch.upper_sulcus * 1e3, bottom = arch.lower_sulcus * 1e3,
                middle = form.at(topology.mouth(5, 8)).y();
   // On the wall in front of the teeth, by the angle along the arch from the midline (degrees).
-  const auto wall = [&](double angle, double y) {
+  const auto wall = [&](double angle, double y, double beyond) {
     const double a = angle * M_PI / 180;
-    return Vector3d(half_width * std::sin(a), y, z0 + depth * std::cos(a));
+    return Vector3d((half_width + 0.4 * beyond) * std::sin(a), y, z0 + (depth + beyond) * std::cos(a));
   };
   constexpr double inner_angle[9] = {0, 8, 16, 24.5, 34, 44, 55, 66, 75};
   constexpr double sulcus_angle[9] = {0, 8.5, 17, 26, 36, 47.5, 60, 74, 84};
@@ -32,8 +34,9 @@ void place_mouth_bag(SkinForm& form, const Proportions& proportions) {
       const double fold = upper ? top : bottom;
       const double parting = form.at(topology.mouth(6, column)).y();
       const double edge = parting + 0.5 * (fold - parting);
-      form.place(topology.mouth(7, column), wall(inner_angle[c], middle + (edge - middle) * inner_rise[c]), 1e4);
-      form.place(topology.mouth(8, column), wall(sulcus_angle[c], middle + (fold - middle) * sulcus_rise[c]), 1e4);
+      form.place(topology.mouth(7, column), wall(inner_angle[c], middle + (edge - middle) * inner_rise[c], 0), 1e4);
+      form.place(topology.mouth(8, column),
+                 wall(sulcus_angle[c], middle + (fold - middle) * sulcus_rise[c], fold_depth), 1e4);
       // Roof and floor: inwards and back; the cheek columns go straight back.
       const double side = c / 8.0;
       const double palate = upper ? top + 3.5 : bottom + 1.5, rear = upper ? top - 3 : bottom + 7;
@@ -48,8 +51,8 @@ void place_mouth_bag(SkinForm& form, const Proportions& proportions) {
     form.place(topology.throat(u, 1),
                {half_width * (0.06 + 0.82 * side) * std::min(1.0, side * 8), middle, z0 - 10 + side}, 1e4);
   }
-  for (int ring = 7; ring <= SkinTopology::mouth_rings; ++ring)
-    for (int c = 0; c <= 16; ++c) form.on_limit[topology.mouth(ring, c)] = ring == 7 || ring == 8;
+  for (int ring = 8; ring <= SkinTopology::mouth_rings; ++ring)
+    for (int c = 0; c <= 16; ++c) form.keep_control(topology.mouth(ring, c));
 }
 
 }  // namespace phiz
