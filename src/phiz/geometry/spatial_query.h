@@ -50,7 +50,7 @@ class SurfaceQuery {
   std::vector<int> triangles_in_box(const Vector3d& low, const Vector3d& high) const;
 
   /// Generalised winding number (Jacobson et al. 2013; far clusters as dipoles, Barill et al. 2018): 1 inside, 0
-  /// outside of a closed outward surface, between the two near holes of an open one. Error below 0.01.
+  /// outside of a closed outward surface, between the two near holes of an open one. Error below 0.03.
   double winding_number(const Vector3d& p) const;
   bool is_inside(const Vector3d& p) const { return winding_number(p) > 0.5; }
   /// Distance to the surface, negative inside.

@@ -25,7 +25,7 @@ struct Dipole {
   double radius = 0;
 };
 
-constexpr double far_ratio = 3.0;  // use the dipole beyond this many radii; keeps the error of the sum below 0.01
+constexpr double far_ratio = 3.0;  // use the dipole beyond this many radii; keeps the error of the sum below 0.03
 
 double solid_angle(const Vector3d& p, const Corners& t) {
   const Vector3d a = t.a - p, b = t.b - p, c = t.c - p;
