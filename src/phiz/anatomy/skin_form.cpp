@@ -62,12 +62,14 @@ Eigen::SparseMatrix<double> bending(const MatrixX3d& X, VectorXd& areas) {
   return K.transpose() * inverse_areas.asDiagonal() * K;
 }
 
-/// The least of |bend x|^2 + sum_v pull_v |x_v - place_v|^2, for the three coordinates.
-MatrixX3d least_bending(Eigen::SparseMatrix<double> A, const VectorXd& pull, const MatrixX3d& places) {
-  for (Eigen::Index v = 0; v < pull.size(); ++v) A.coeffRef(v, v) += pull[v];
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(A);
+/// The least of x' A x + sum_r pull_r |(S x - place)_r|^2, for the three coordinates.
+MatrixX3d least_bending(const Eigen::SparseMatrix<double>& A, const Eigen::SparseMatrix<double>& S,
+                        const VectorXd& pull, const MatrixX3d& places) {
+  const Eigen::SparseMatrix<double> pulled = S.transpose() * pull.asDiagonal();
+  const Eigen::SparseMatrix<double> system = A + pulled * S;
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(system);
   if (solver.info() != Eigen::Success) fail("the skin's smoothing equations could not be solved");
-  return solver.solve(pull.asDiagonal() * places);
+  return solver.solve(pulled * places);
 }
 
 /// The graph Laplacian's energy, for a first guess without positions.
@@ -106,15 +108,28 @@ void make_symmetric(MatrixX3d& X) {
 
 }  // namespace
 
-void fair(SkinForm& form) {
+void fair(SkinForm& form, const SparseMatrixd& limit_mask) {
   constexpr double smoothing_length = 3.0;  // millimetres: shorter waves of the places are ironed out
+  const Eigen::Index n = form.X.rows();
   const MatrixX3d places = form.X;
-  const VectorXd firmness =
-      Eigen::Map<const VectorXd>(form.weight.data(), static_cast<Eigen::Index>(form.weight.size()));
-  form.X = least_bending(graph_bending(), 10 * firmness, places);
+  const VectorXd firmness = Eigen::Map<const VectorXd>(form.weight.data(), n);
+  Eigen::SparseMatrix<double> identity(n, n);
+  identity.setIdentity();
+  form.X = least_bending(graph_bending(), identity, 10 * firmness, places);
+  // Rows of the limit mask where the limit surface should pass through the place, else of the identity.
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int v = 0; v < n; ++v) {
+    if (!form.on_limit[v])
+      entries.emplace_back(v, v, 1.0);
+    else
+      for (SparseMatrixd::InnerIterator it(limit_mask, v); it; ++it)
+        entries.emplace_back(v, static_cast<int>(it.col()), it.value());
+  }
+  Eigen::SparseMatrix<double> sample(n, n);
+  sample.setFromTriplets(entries.begin(), entries.end());
   VectorXd areas;
   const Eigen::SparseMatrix<double> A = bending(form.X, areas);
-  form.X = least_bending(A, firmness.cwiseProduct(areas) / std::pow(smoothing_length, 4), places);
+  form.X = least_bending(A, sample, firmness.cwiseProduct(areas) / std::pow(smoothing_length, 4), places);
   make_symmetric(form.X);
 }
 

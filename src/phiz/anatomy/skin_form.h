@@ -46,6 +46,7 @@ void place_mouth_bag(SkinForm& form, const Proportions& proportions);
 
 /// Moves the vertices to where the bending energy of the surface plus the weighted squared distance from the places is
 /// least.
-void fair(SkinForm& form);
+/// `limit_mask`: positions of the limit surface at the vertices, from the control vertices.
+void fair(SkinForm& form, const SparseMatrixd& limit_mask);
 
 }  // namespace phiz

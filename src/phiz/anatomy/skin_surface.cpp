@@ -29,17 +29,6 @@ const SparseMatrixd& limit_mask() {
   return mask;
 }
 
-/// Moves control vertices until the limit surface passes through the places of those that ask for it.
-void pull_to_limit(SkinForm& form) {
-  const MatrixX3d wanted = form.X;
-  constexpr int rounds = 4;  // more would only sharpen the noise of the places
-  for (int k = 0; k < rounds; ++k) {
-    const MatrixX3d error = wanted - limit_mask() * form.X;
-    for (Eigen::Index v = 0; v < error.rows(); ++v)
-      if (form.on_limit[v]) form.X.row(v) += error.row(v);
-  }
-}
-
 MatrixX3d cage_vertices(const Proportions& proportions, const IdentityParameters& identity) {
   SkinForm form;
   place_sheet(form);
@@ -49,8 +38,7 @@ MatrixX3d cage_vertices(const Proportions& proportions, const IdentityParameters
   fit_person(form, proportions, identity);
   place_lids(form, proportions, identity);
   place_mouth_bag(form, proportions);
-  fair(form);
-  pull_to_limit(form);
+  fair(form, limit_mask());
   return form.X * 1e-3;
 }
 
