@@ -36,49 +36,60 @@ double cranial_vault(const Vector3d& p) {
 }
 
 double temporal_bone(const Vector3d& p) {
-  const double petrous = ellipsoid(p, {45, 10, -18}, {17, 14, 24});
-  const double mastoid = capsule(p, {54, 2, -22}, {51, -19, -19}, 10, 5.5);
-  const double meatus = capsule(p, {75, 1, -13}, {56, 3, -13}, 3.5, 3);
-  return carve(blend(petrous, mastoid, 6), meatus, 3);
+  const double petrous = ellipsoid(p, {43, 10, -20}, {16, 14, 23});
+  const double mastoid = capsule(p, {51, 2, -24}, {49, -19, -21}, 10, 5.5);
+  return blend(petrous, mastoid, 6);
 }
 
+using Bar = std::span<const BarNode>;
+
+constexpr int rim_nodes = 9;
+const std::array<BarNode, rim_nodes> orbital_rim{{{{13, 33, 60}, 5},
+                                                  {{17, 42.5, 62}, 5.5},
+                                                  {{30, 46.5, 60}, 5},
+                                                  {{42, 43.5, 53.5}, 4.8},
+                                                  {{49.5, 33, 44.5}, 4.5},
+                                                  {{50, 20, 43}, 5},
+                                                  {{44.5, 9, 49.5}, 5},
+                                                  {{31, 6, 56}, 4.5},
+                                                  {{18, 13, 58}, 4.2}}};
+const std::array<BarNode, 5> zygomatic_arch{
+    {{{51.5, 6, 39.5}, 5}, {{56.8, 7.5, 29}, 4.4}, {{58.2, 7.5, 15}, 4}, {{57.5, 7, 0}, 4.2}, {{53, 7, -12}, 6}}};
+const Vector3d arch_section(1.5, 1, 1);
+const std::array<BarNode, 7> mandible_body{{{{46, -43, 8}, 4.4},
+                                            {{43, -50, 17.5}, 5.2},
+                                            {{37, -54.5, 31}, 5.8},
+                                            {{31, -58.2, 43}, 6},
+                                            {{20, -62.5, 57}, 5.8},
+                                            {{8, -64, 63}, 5.6},
+                                            {{0, -64.5, 63.8}, 5.6}}};
+const Vector3d body_section(1, 0.56, 1);
+
 double brow_and_orbital_rim(const Vector3d& p) {
-  static const std::array<BarNode, 9> rim{{{{13, 33, 60}, 5},
-                                           {{17, 42.5, 62}, 5.5},
-                                           {{30, 46.5, 60}, 5},
-                                           {{43, 43.5, 53.5}, 4.8},
-                                           {{51.5, 33, 44.5}, 4.5},
-                                           {{51.5, 20, 43}, 5},
-                                           {{45, 9, 49.5}, 5},
-                                           {{31, 6, 56}, 4.5},
-                                           {{18, 13, 58}, 4.2}}};
-  const double ring = implicit::bar(p, rim, {1, 1, 1});
+  const double ring = implicit::bar(p, orbital_rim, {1, 1, 1});
   const double glabella = ellipsoid(p, {0, 46, 58}, {19, 11, 10});
   const double superciliary = capsule(p, {9, 45, 63}, {27, 52, 58}, 4.5, 3);
   return blend(blend(ring, glabella, 8), superciliary, 7);
 }
 
 double zygoma(const Vector3d& p) {
-  const double body = ellipsoid(p, {46, 4, 45}, {12.5, 12, 9});
-  const double buttress = capsule(p, {43, -2, 45}, {31, -19, 41}, 8, 7);
-  static const std::array<BarNode, 5> nodes{
-      {{{54, 6, 39}, 5}, {{59.5, 7.5, 29}, 4.2}, {{62, 7.5, 15}, 3.8}, {{61, 7, 0}, 4}, {{57, 7, -10}, 6}}};
-  const double arch = implicit::bar(p, nodes, {1.55, 1, 1});
-  return blend(blend(body, buttress, 8), arch, 6);
+  const double body = ellipsoid(p, {45, 4, 45}, {12, 12, 9});
+  const double buttress = capsule(p, {42, -2, 45}, {31, -19, 41}, 8, 7);
+  return blend(blend(body, buttress, 8), implicit::bar(p, zygomatic_arch, arch_section), 6);
 }
 
 double midface(const Vector3d& p) {
   const double core = rounded_box(p, {0, 4, 36}, {25, 31, 24}, 13);
   const double sphenoid = rounded_box(p, {0, 12, 8}, {28, 26, 26}, 12);
   const double infraorbital = ellipsoid(p, {26, 2, 50}, {15, 15, 12});
-  const double nasal = capsule(p, {1.5, 37, 61}, {2.5, 17, 78.5}, 5.5, 2.4);
+  const double nasal = capsule(p, {1.5, 37, 61}, {1.5, 18, 77.5}, 5.5, 3.2);
   const double frontal_process = capsule(p, {9.5, 32, 58}, {14, 4, 61}, 4.5, 4.5);
-  const double beside_nose = capsule(p, {5, 30, 63}, {9.5, 13, 69}, 3.5, 2.6);
+  const double beside_nose = capsule(p, {5, 30, 63}, {8, 13, 68.5}, 4, 2.8);
   const double spine = capsule(p, {0, -9.5, 64}, {0, -7.5, 75.5}, 4, 1.2);
   const double pterygoid = capsule(p, {16, -2, 15}, {17, -24, 15}, 6, 3.5);
   double f = blend(core, sphenoid, 12);
   f = blend(f, infraorbital, 10);
-  f = blend(f, blend(nasal, beside_nose, 4), 6);
+  f = blend(f, blend(nasal, beside_nose, 6), 6);
   f = blend(f, frontal_process, 6);
   f = blend(f, spine, 5);
   return blend(f, pterygoid, 6);
@@ -117,7 +128,7 @@ double orbit(const Vector3d& p) {
 
 double nasal_opening(const Vector3d& p) {
   const double lower = ellipsoid(p, {4.5, -0.5, 68}, {7.5, 7.5, 20});
-  const double upper = ellipsoid(p, {0, 9, 70}, {6.3, 11, 18});
+  const double upper = ellipsoid(p, {0, 5, 70}, {6.3, 11, 18});
   return blend(lower, upper, 6);
 }
 
@@ -127,34 +138,24 @@ double temporal_fossa(const Vector3d& p) {
   return blend(upper, lower, 10);
 }
 
-/// Cervical column: bodies, transverse and spinous processes of seven vertebrae.
-double cervical_column(const Vector3d& p) {
-  constexpr double top = -14, pitch = 19, bottom = -160;
+/// Cervical column: a shaft; when `detailed`, bodies, transverse and spinous processes of its vertebrae.
+double cervical_column(const Vector3d& p, bool detailed) {
+  constexpr double top = -14, pitch = 19, bottom = -150;
   const double s = std::clamp((top - p.y()) / (top - bottom), 0.0, 1.0);
   const double z = -24 + 10 * s - 22 * s * s;  // lordosis
+  const double ends = std::max(p.y() - top - 6, bottom - p.y());
+  if (!detailed) return implicit::intersect(std::hypot(p.x() / 1.2, p.z() - z + 3) - 11, ends, 8);
   const double level = std::round(std::clamp((top - p.y()) / pitch, 0.0, 7.0));
   const double wave = 0.5 + 0.5 * std::cos(2 * std::numbers::pi * (top - p.y()) / pitch);
-  const Vector3d q(p.x(), 0, p.z() - z);
-  const double shaft = std::hypot(q.x() / 1.15, q.z()) - (7.6 + 1.6 * wave);
-  const double y = top - pitch * level;
-  const Vector3d centre(0, y, z);
+  const double shaft = std::hypot(p.x() / 1.15, p.z() - z) - (7.6 + 1.6 * wave);
+  const Vector3d centre(0, top - pitch * level, z);
   const double transverse = capsule(p, centre + Vector3d(6, 0, -4), centre + Vector3d(20, -2, -6), 4.2, 3);
-  const double spinous = capsule(p, centre + Vector3d(0, -1, -6), centre + Vector3d(0, -7, -25), 4, 3);
-  const double ends = std::max(p.y() - top - 6, bottom - p.y());
+  const double spinous = capsule(p, centre + Vector3d(0, -1, -6), centre + Vector3d(0, -6, -23), 4, 3);
   return implicit::intersect(blend(blend(shaft, transverse, 5), spinous, 5), ends, 6);
 }
 
-double skull_mm(const Vector3d& p);
-
 double mandible_mm(const Vector3d& p) {
-  static const std::array<BarNode, 7> body_nodes{{{{46, -43, 8}, 4.2},
-                                                  {{44.5, -50, 18}, 5},
-                                                  {{39.5, -55, 32}, 5.6},
-                                                  {{32, -59, 46}, 5.8},
-                                                  {{20, -62.5, 58}, 5.6},
-                                                  {{8, -64, 63.2}, 5.4},
-                                                  {{0, -64.5, 64}, 5.4}}};
-  double f = implicit::bar(p, body_nodes, {1, 0.56, 1});
+  double f = implicit::bar(p, mandible_body, body_section);
   const double chin = ellipsoid(p, {0, -68.5, 64}, {11, 6, 5.5});
   const double tubercle = ellipsoid(p, {12, -71, 61}, {6, 4, 4.5});
   f = blend(f, blend(chin, tubercle, 5), 6);
@@ -162,7 +163,7 @@ double mandible_mm(const Vector3d& p) {
   const double c = std::cos(0.12), s = std::sin(0.12);
   const double y = p.y() + 26, z = p.z() - 9.5;
   const Vector3d q(p.x() - (47.2 + 0.03 * (p.y() + 26)), c * y + s * z, -s * y + c * z);
-  double ramus = rounded_box(q, Vector3d::Zero(), {3.1, 26, 14.5}, 3);
+  double ramus = rounded_box(q, Vector3d::Zero(), {3.5, 26, 14.5}, 3.4);
   const double notch = capsule(p, {30, 1, 9.5}, {70, 1, 9.5}, 8.5, 8.5);
   ramus = carve(ramus, notch, 4);
   const double corner =
@@ -178,7 +179,7 @@ double mandible_mm(const Vector3d& p) {
   return blend(f, angle, 6);
 }
 
-double skull_mm(const Vector3d& p) {
+double skull_mm(const Vector3d& p, bool detailed) {
   double f = blend(cranial_vault(p), temporal_bone(p), 6);
   f = blend(f, midface(p), 8);
   f = blend(f, maxilla(p), 7);
@@ -188,7 +189,7 @@ double skull_mm(const Vector3d& p) {
   f = carve(f, orbit(p), 4);
   f = carve(f, nasal_opening(p), 3);
   f = carve(f, palate(p), 3);
-  f = blend(f, cervical_column(p), 6);
+  f = blend(f, cervical_column(p, detailed), 6);
   return carve(f, mandible_mm(p) - 1.8, 1.5);
 }
 
@@ -260,8 +261,20 @@ Vector3d ReferenceWarp::operator()(const Vector3d& p) const {
   return moved;
 }
 
-double reference_skull(const Vector3d& p) {
-  return 1e-3 * skull_mm(left_mm(p));
+double reference_skull(const Vector3d& p, bool detailed) {
+  return 1e-3 * skull_mm(left_mm(p), detailed);
+}
+
+double reference_skull_struts(const Vector3d& p) {
+  const Vector3d q = left_mm(p);
+  const double rim = implicit::bar(q, orbital_rim, {1, 1, 1}) + 1.2;
+  const double arch = implicit::bar(q, zygomatic_arch, arch_section) + 0.3;
+  return 1e-3 * carve(std::min(rim, arch), orbit(q) - 0.3, 1);
+}
+
+double reference_mandible_struts(const Vector3d& p) {
+  const Vector3d q = left_mm(p);
+  return 1e-3 * std::max(mandible_mm(q) + 0.8, -24 - q.y());
 }
 
 double reference_mandible(const Vector3d& p) {

@@ -24,8 +24,13 @@ class ReferenceWarp {
 Proportions reference_proportions();
 
 /// Distance-like fields in the reference head, exactly mirror symmetric.
-double reference_skull(const Vector3d& p);     ///< cranium, face, cervical column
-double reference_mandible(const Vector3d& p);  ///< with condyles and coronoid processes
+/// Skull: cranium, face and cervical column, the latter with the processes of its vertebrae when `detailed`. Mandible:
+/// with condyles and coronoid processes. Struts: the thin parts (orbital rim and zygomatic arch; the ramus) that must
+/// not break where the flesh over them is thin.
+double reference_skull(const Vector3d& p, bool detailed);
+double reference_mandible(const Vector3d& p);
+double reference_skull_struts(const Vector3d& p);
+double reference_mandible_struts(const Vector3d& p);
 
 /// The part of the bones that carries the teeth and lies inside the gums: alveolar processes, in the person's head.
 double upper_alveolar_process(const Proportions& person, const Vector3d& p);

@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "phiz/anatomy/bone_shapes.h"
 #include "phiz/anatomy/flesh_thickness.h"
 #include "phiz/anatomy/implicit.h"
+#include "phiz/anatomy/untangle.h"
 #include "phiz/core/error.h"
 #include "phiz/core/parallel.h"
 #include "phiz/geometry/remesh.h"
@@ -26,51 +29,37 @@ MatrixX3i all_triangles(const BoneEnvelope& skin) {
   return F;
 }
 
-/// A sheet of skin that can be asked for its distance and on which side of it a point lies.
-class Sheet {
- public:
-  Sheet(const MatrixX3d& V, const MatrixX3i& F, const MatrixX3d& normals) : F_(F), normals_(normals), query_(V, F) {}
-
-  /// Distance, negative on the outer side, to at most `limit`; `limit` when farther.
-  double depth(const Vector3d& p, double limit) const {
-    const auto near = query_.closest_point_within(p, limit);
-    if (!near) return limit;
-    Vector3d normal = Vector3d::Zero();
-    for (int k = 0; k < 3; ++k) normal += near->barycentric(k) * normals_.row(F_(near->triangle, k)).transpose();
-    const double distance = std::sqrt(near->squared_distance);
-    return normal.dot(p - near->position) > 0 ? -distance : distance;
-  }
-
- private:
-  const MatrixX3i& F_;
-  const MatrixX3d& normals_;
-  SurfaceQuery query_;
-};
-
 /// Room for bone: positive where bone may be, metres.
 class Room {
  public:
   Room(const Proportions& proportions, const BoneEnvelope& skin, const BoneOptions& options)
       : options_(options),
         thickness_(proportions),
-        normals_(vertex_normals(skin.V, all_triangles(skin))),
-        outer_(skin.V, skin.outer, normals_),
-        inner_(skin.V, skin.inner, normals_) {}
+        whole_(skin.V, all_triangles(skin)),
+        outer_(skin.V, skin.outer),
+        inner_(skin.V, skin.inner) {}
 
-  double operator()(const Vector3d& p) const {
-    constexpr double reach = 0.025;
-    const double outer = outer_.depth(p, reach), inner = inner_.depth(p, reach);
-    if (std::abs(inner) < std::abs(outer) && inner < 0) return inner;
-    if (std::abs(outer) <= std::abs(inner) && outer < 0) return outer;
-    const double flesh = std::max(options_.least_flesh, thickness_(p));
-    return std::min(std::abs(outer) - flesh, std::abs(inner) - options_.inner_clearance);
+  /// `struts`: bone here may come up to the least flesh.
+  double operator()(const Vector3d& p, bool struts) const {
+    const double flesh = struts ? options_.least_flesh : std::max(options_.least_flesh, thickness_(p));
+    const double outer = distance(outer_, p), inner = distance(inner_, p);
+    if (std::min(outer, inner) < overshoot && !whole_.is_inside(p))
+      return outer < inner ? -outer - flesh : -inner - options_.inner_clearance;
+    return std::min(outer - flesh, inner - options_.inner_clearance);
   }
 
  private:
+  static constexpr double reach = 0.025;      // nothing farther away matters
+  static constexpr double overshoot = 0.010;  // no bone shape reaches farther out of the skin
+
+  static double distance(const SurfaceQuery& sheet, const Vector3d& p) {
+    const auto near = sheet.closest_point_within(p, reach);
+    return near ? std::sqrt(near->squared_distance) : reach;
+  }
+
   BoneOptions options_;
   ThicknessField thickness_;
-  MatrixX3d normals_;
-  Sheet outer_, inner_;
+  SurfaceQuery whole_, outer_, inner_;
 };
 
 /// The component with the largest volume.
@@ -96,14 +85,21 @@ Box bounds(const MatrixX3d& V) {
   return {V.colwise().minCoeff().transpose(), V.colwise().maxCoeff().transpose()};
 }
 
+/// The zero set; triangles longer than those that the thin parts need come from decimation.
 TriangleMesh surface(const ScalarField& field, const Box& box, double edge_length, const char* name) {
+  constexpr double finest_shape = 0.0032;
   PolygoniseOptions options;
-  options.edge_length = edge_length;
+  options.edge_length = std::min(edge_length, finest_shape);
+  options.lipschitz = 1.5;
+  options.projection_steps = 2;
   TriangleMesh mesh = main_part(polygonise(field, box, options), name);
-  if (!self_intersections(mesh).empty()) {
-    // Even triangles can fold on the thinnest ridges; the raw triangulation of the lattice cannot.
-    options.improve = false;
-    mesh = main_part(polygonise(field, box, options), name);
+  if (edge_length > finest_shape) {
+    const double area = 0.5 * triangle_area_normals(mesh.V, mesh.F).rowwise().norm().sum();
+    const TriangleMesh fine = mesh;
+    for (const double more : {1.0, 1.4, 2.0}) {
+      mesh = decimate(fine, static_cast<int>(more * area / (0.433 * edge_length * edge_length)));
+      if (self_intersections(mesh).empty()) break;
+    }
   }
   return mesh;
 }
@@ -113,19 +109,27 @@ struct Fields {
 };
 
 /// Bone shapes of the person, cut to the room that the skin leaves.
-Fields clipped_fields(const ReferenceWarp& warp, const Room& room, const BoneOptions& options) {
-  constexpr double soft = 0.002, far = 0.008;
-  const auto clip = [&room](double f, const Vector3d& p) {
-    return f > far ? f : implicit::intersect(f, -room(p), soft);
+Fields clipped_fields(const ReferenceWarp& warp, const Room& room, const BoneOptions& options, bool detailed) {
+  constexpr double soft = 0.002, far = 0.0025, deep = 0.02;
+  const auto clip = [&room](double f, double struts, const Vector3d& p) {
+    if (f > far || f < -deep) return f;
+    const double usual = implicit::intersect(f, -room(p, false), soft);
+    return usual < 0 || struts > far ? usual : std::min(usual, implicit::intersect(struts, -room(p, true), 0.5 * soft));
   };
-  return {[&warp, clip, &options](const Vector3d& p) {
+  return {[&warp, clip, &options, detailed](const Vector3d& p) {
             const Vector3d q = warp(p);
-            const double f = reference_skull(q);
+            const double f = reference_skull(q, detailed);
             if (f > far) return f;
-            return clip(implicit::carve(f, reference_mandible(q) - options.joint_gap, soft), p);
+            const double gap = options.joint_gap - reference_mandible(q);  // positive too near to the mandible
+            return std::max(clip(f, reference_skull_struts(q), p), gap);
           },
-          [&warp, clip](const Vector3d& p) { return clip(reference_mandible(warp(p)), p); }};
+          [&warp, clip](const Vector3d& p) {
+            const Vector3d q = warp(p);
+            return clip(reference_mandible(q), reference_mandible_struts(q), p);
+          }};
 }
+
+constexpr double mandible_share = 0.75;  // the slender mandible takes shorter edges than the skull
 
 /// Moves the vertices of `bone` that lie nearer to the skin than `least` away from it, and those of triangles that skin
 /// vertices come nearer to.
@@ -167,23 +171,25 @@ void keep_clear(TriangleMesh& bone, const TriangleMesh& skin, double least) {
 
 }  // namespace
 
-BoneSurfaces build_bones(const Proportions& proportions, const BoneEnvelope& skin, const BoneOptions& options) {
+BoneSurfaces build_bones(const Proportions& proportions, const BoneEnvelope& skin, const TriangleMesh& simulated_skin,
+                         const BoneOptions& options) {
   const ReferenceWarp warp(proportions);
   const Room room(proportions, skin, options);
-  const Fields fields = clipped_fields(warp, room, options);
+  const Fields fields = clipped_fields(warp, room, options, false);
   const Box box = bounds(skin.V);
   BoneSurfaces bones{surface(fields.skull, box, options.edge_length, "skull"),
-                     surface(fields.mandible, box, options.edge_length, "mandible")};
-  const TriangleMesh all{skin.V, all_triangles(skin), {}, {}};
-  keep_clear(bones.skull, all, 0.8 * options.inner_clearance);
-  keep_clear(bones.mandible, all, 0.8 * options.inner_clearance);
+                     surface(fields.mandible, box, mandible_share * options.edge_length, "mandible")};
+  keep_clear(bones.skull, simulated_skin, 0.8 * options.inner_clearance);
+  keep_clear(bones.mandible, simulated_skin, 0.8 * options.inner_clearance);
+  untangle(bones.skull, "skull", 40);
+  untangle(bones.mandible, "mandible", 40);
   return bones;
 }
 
 BoneSurfaces build_drawn_bones(const Proportions& proportions, const BoneEnvelope& skin, const BoneOptions& options) {
   const ReferenceWarp warp(proportions);
   const Room room(proportions, skin, options);
-  const Fields fields = clipped_fields(warp, room, options);
+  const Fields fields = clipped_fields(warp, room, options, true);
   const Box box = bounds(skin.V);
   constexpr double seam = 0.0015;
   const ScalarField skull = [&](const Vector3d& p) {

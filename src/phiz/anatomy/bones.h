@@ -29,8 +29,10 @@ struct BoneOptions {
 
 /// Closed, outward, non-self-intersecting bones that keep the flesh thickness of flesh_thickness.h below the outer
 /// skin, `inner_clearance` from the inner sheets and `joint_gap` from each other (to within a third of these at coarse
-/// edge lengths). Throws phiz::Error(failure) when the skin leaves no room for them.
-BoneSurfaces build_bones(const Proportions& proportions, const BoneEnvelope& skin, const BoneOptions& options);
+/// edge lengths). `skin`: fine enough to be close to the smooth surface; `simulated_skin`:
+/// what the bones must not touch. Throws phiz::Error(failure) when the skin leaves no room for them.
+BoneSurfaces build_bones(const Proportions& proportions, const BoneEnvelope& skin, const TriangleMesh& simulated_skin,
+                         const BoneOptions& options);
 
 /// Bones to look at: the same with their alveolar processes, which stand in the oral cavity inside the gums.
 BoneSurfaces build_drawn_bones(const Proportions& proportions, const BoneEnvelope& skin, const BoneOptions& options);
