@@ -43,6 +43,8 @@ int run(int argc, char** argv) {
     phiz::catch_interrupts();
   });
   phiz::add_template(app);
+  phiz::add_animate(app);
+  phiz::add_export(app);
 
   try {
     app.parse(argc, argv);

@@ -14,6 +14,23 @@ Eigen::Isometry3d turn_about(const Vector3d& centre, const Matrix3d& rotation) {
 
 }  // namespace
 
+Take rest_take(const HeadTemplate& head) {
+  Take take;
+  take.model = head.name;
+  take.skin = head.skin;
+  take.parts = head.parts;
+  take.joint = head.jaw;
+  take.left_eye_centre = head.left_eye_centre;
+  take.right_eye_centre = head.right_eye_centre;
+  TakeFrame frame;
+  frame.skin = head.skin.V.cast<float>();
+  frame.volume = head.volume.V.cast<float>();
+  frame.statistics.converged = true;
+  take.frames.push_back(frame);
+  take.frames_planned = 1;
+  return take;
+}
+
 Eigen::Isometry3d part_transform(const Take& take, const TakeFrame& frame, const Part& part) {
   switch (part.carrier) {
     case Carrier::mandible:

@@ -39,6 +39,9 @@ struct Take {
   int frames_planned = 0;  ///< frames of the whole performance; more than frames.size() if interrupted
 };
 
+/// A head at rest, as a take of one frame.
+Take rest_take(const HeadTemplate& head);
+
 /// Motion of a part in one frame, world from rest.
 Eigen::Isometry3d part_transform(const Take& take, const TakeFrame& frame, const Part& part);
 

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// phiz animate: a head plays a performance; every frame is solved and kept.
+#include "phiz/face/animate.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "phiz/core/error.h"
+#include "phiz/core/progress.h"
+#include "phiz/face/volumetric_blendshapes.h"
+#include "phiz/io/container.h"
+#include "phiz/io/live_link.h"
+#include "phiz/io/take_file.h"
+#include "report.h"
+#include "verbs.h"
+
+namespace phiz {
+
+namespace {
+
+struct AnimateArguments {
+  std::string model;
+  std::string performance;
+  std::string output;
+  std::string save_model;
+  std::pair<int, int> frames{0, -1};
+  std::optional<double> frame_rate;
+  bool resume = false;
+  bool dynamic = false;
+  bool no_contact = false;
+  Report report;
+};
+
+/// The model in a file, or the one of the head in it: its expressions are then carried into the flesh first.
+FaceModel load_model(const std::string& path) {
+  if (kind_of(path) != ContainerKind::head_template) return load_face_model(path);
+  HeadTemplate head = load_head_template(path);
+  Progress progress("volumetric blendshapes", static_cast<std::ptrdiff_t>(head.expressions.size()));
+  BlendshapeOptions options;
+  options.report = [&progress](const std::string&, const SolveStatistics&) { progress.advance(); };
+  return build_volumetric_blendshapes(std::move(head), options);
+}
+
+Performance load_any_performance(const std::string& path) {
+  if (path.ends_with(".phiz")) return load_performance(path);
+  const LiveLinkRecording recording = read_live_link(path);
+  for (const std::string& note : recording.notes) announce(path + ": " + note);
+  return recording.performance;
+}
+
+void announce_mismatch(const ExpressionMatch& match) {
+  if (!match.unmatched.empty())
+    announce(fmt::format("the model does not have these expressions of the performance: {}",
+                         fmt::join(match.unmatched, ", ")));
+  if (!match.undriven.empty())
+    announce(fmt::format("the performance does not drive these expressions of the model: {}",
+                         fmt::join(match.undriven, ", ")));
+}
+
+nlohmann::json as_json(int number, double time, const SolveStatistics& statistics) {
+  return {{"frame", number},
+          {"time_s", time},
+          {"converged", statistics.converged},
+          {"iterations", statistics.iterations},
+          {"residual", statistics.residual},
+          {"energy_j", statistics.energy},
+          {"contacts", statistics.contacts},
+          {"penetration_mm", 1e3 * statistics.penetration},
+          {"volume_change", statistics.volume_change},
+          {"last_step_mm", 1e3 * statistics.last_step},
+          {"ms", statistics.milliseconds}};
+}
+
+/// Goes on with the take at `path`; `finished` gets its frames, of which all but the last are stripped of positions.
+TakeWriter resume_take(const std::string& path, const Take& head, std::vector<TakeFrame>& finished) {
+  TakeWriter writer = TakeWriter::resume(path, head);
+  if (writer.frames() == 0) return writer;
+  writer.finish();  // what a killed program left has no checksum yet
+  const TakeReader reader(path);
+  for (int f = 0; f < reader.frames(); ++f) {
+    if (!finished.empty()) {
+      finished.back().skin.resize(0, 3);
+      finished.back().volume.resize(0, 3);
+    }
+    finished.push_back(reader.frame(f));
+  }
+  return TakeWriter::resume(path, head);
+}
+
+void animate_model(const AnimateArguments& arguments) {
+  Performance performance = load_any_performance(arguments.performance);
+  if (arguments.frame_rate) performance = resample(performance, *arguments.frame_rate);
+  const FaceModel model = load_model(arguments.model);
+  if (!arguments.save_model.empty()) save(arguments.save_model, model);
+
+  AnimateOptions options;
+  options.simulation.dynamic = arguments.dynamic;
+  options.simulation.contact = !arguments.no_contact;
+  std::tie(options.first_frame, options.end_frame) = arguments.frames;
+  announce_mismatch(match_expressions(model, performance));
+
+  const Take head = empty_take(model, performance, options);
+  std::vector<TakeFrame> finished;
+  TakeWriter writer =
+      arguments.resume ? resume_take(arguments.output, head, finished) : TakeWriter(arguments.output, head);
+  nlohmann::json statistics = nlohmann::json::array();
+  std::vector<double> milliseconds;
+  int unconverged = 0;
+  double penetration = 0;
+  const auto note = [&](const TakeFrame& frame, int number) {
+    statistics.push_back(as_json(number, frame.time, frame.statistics));
+    milliseconds.push_back(frame.statistics.milliseconds);
+    unconverged += frame.statistics.converged ? 0 : 1;
+    penetration = std::max(penetration, frame.statistics.penetration);
+  };
+  for (std::size_t f = 0; f < finished.size(); ++f) note(finished[f], options.first_frame + static_cast<int>(f));
+  {
+    Progress progress("frames", head.frames_planned);
+    progress.advance(static_cast<std::ptrdiff_t>(finished.size()));
+    animate(model, performance, options, finished, [&](const TakeFrame& frame, int number) {
+      writer.append(frame);
+      note(frame, number);
+      progress.advance();
+      return true;
+    });
+  }
+  const int done = writer.frames();
+  writer.finish();
+
+  std::sort(milliseconds.begin(), milliseconds.end());
+  const double median = milliseconds.empty() ? 0 : milliseconds[milliseconds.size() / 2];
+  const double longest = milliseconds.empty() ? 0 : milliseconds.back();
+  arguments.report.write({{"take", arguments.output},
+                          {"model", model.head.name},
+                          {"frames", done},
+                          {"frames_planned", head.frames_planned},
+                          {"frame_rate", head.frame_rate},
+                          {"frames_not_converged", unconverged},
+                          {"ms_median", median},
+                          {"ms_max", longest},
+                          {"penetration_mm_max", 1e3 * penetration},
+                          {"statistics", statistics}});
+  if (done < head.frames_planned)
+    fail(
+        fmt::format("stopped after {} of {} frames, which are kept in {}", done, head.frames_planned, arguments.output),
+        "the same command with --resume goes on");
+  arguments.report.print(
+      fmt::format("{}: {} frames, {} not converged, median {:.1f} ms and at most {:.1f} ms a frame, penetration at "
+                  "most {:.3f} mm\n",
+                  arguments.output, done, unconverged, median, longest, 1e3 * penetration));
+}
+
+}  // namespace
+
+void add_animate(CLI::App& app) {
+  CLI::App* verb = app.add_subcommand("animate", "Let a head play a performance, with physics in every frame");
+  auto arguments = std::make_shared<AnimateArguments>();
+  verb->add_option("MODEL", arguments->model, "A head or a face model, a .phiz file")->required();
+  verb->add_option("PERFORMANCE", arguments->performance, "A recording of Live Link Face (CSV), or a .phiz performance")
+      ->required();
+  verb->add_option("-o,--output", arguments->output, "The take, a .phiz file")->required()->type_name("FILE");
+  verb->add_option("--frames", arguments->frames, "Frames A to B - 1 of the performance only")
+      ->delimiter(':')
+      ->type_name("A:B");
+  verb->add_option("--fps", arguments->frame_rate, "Resample the performance to this frame rate")
+      ->check(CLI::Range(1.0, 1000.0));
+  verb->add_flag("--resume", arguments->resume, "Go on with an interrupted take");
+  verb->add_flag("--dynamic", arguments->dynamic, "With inertia; without, every frame is in balance");
+  verb->add_flag("--no-contact", arguments->no_contact, "Let lips and teeth pass through each other");
+  verb->add_option("--save-model", arguments->save_model,
+                   "Keep the face model made from a head: animating it starts at once")
+      ->type_name("FILE");
+  add_report(*verb, arguments->report);
+  verb->footer(
+      "Ctrl-C keeps the finished frames; the same command with --resume completes the take.\n\n"
+      "Example:\n  phiz animate head.phiz performance.csv -o take.phiz --json report.json");
+  verb->callback([arguments] { animate_model(*arguments); });
+}
+
+}  // namespace phiz
