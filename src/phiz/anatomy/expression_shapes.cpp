@@ -7,20 +7,13 @@
 #include <numeric>
 
 #include "phiz/anatomy/ease.h"
-#include "phiz/anatomy/expression_flesh.h"
-#include "phiz/anatomy/expression_lids.h"
-#include "phiz/anatomy/expression_lips.h"
 #include "phiz/anatomy/expression_names.h"
-#include "phiz/anatomy/expression_puff.h"
-#include "phiz/anatomy/expression_pulls.h"
+#include "phiz/anatomy/expression_player.h"
 #include "phiz/anatomy/expression_recipes.h"
-#include "phiz/anatomy/expression_teeth.h"
 #include "phiz/core/error.h"
 
 namespace phiz {
 namespace {
-
-constexpr int iterations = 40;
 
 /// The partner of every vertex under reflection in x = 0: the nearest vertex to the reflected one.
 VectorXi mirror_partners(const MatrixX3d& V) {
@@ -71,54 +64,15 @@ void still_far_regions(MatrixX3d& D) {
   }
 }
 
-class Studio {
- public:
-  Studio(const HeadTemplate& head, const Proportions& proportions)
-      : head_(head),
-        proportions_(proportions),
-        poser_(head.volume, head.carrier),
-        pulls_(head),
-        lips_(head),
-        left_lids_(head, {head.left_eye_centre, proportions.eye_radius}, "left"),
-        right_lids_(head, {head.right_eye_centre, proportions.eye_radius}, "right") {}
-
-  /// Displacement of the drawn skin.
-  MatrixX3d play(const ExpressionRecipe& recipe) const {
-    const Eigen::Isometry3d jaw = jaw_transform(head_.jaw, jaw_pose(recipe, head_.jaw));
-    std::vector<Handle> handles = pulls_.handles(recipe);
-    const auto add = [&handles](const std::vector<Handle>& more) {
-      handles.insert(handles.end(), more.begin(), more.end());
-    };
-    add(lips_.handles(recipe, jaw));
-    add(left_lids_.handles(recipe.lids));
-    const LidMotion other = recipe.paired ? LidMotion{} : recipe.lids;
-    add(right_lids_.handles(other));
-    if (recipe.puff != 0) add(puff_handles(head_, proportions_, recipe.puff * 1e-3));
-    const std::vector<Obstacle> obstacles = {dental_arches(head_, proportions_.arch, jaw),
-                                             left_lids_.eyeball(recipe.lids), right_lids_.eyeball(other)};
-    const MatrixX3d X = poser_.pose(handles, obstacles, jaw, iterations);
-    const MatrixX3d moved = (X - head_.volume.V)(head_.skin_vertices, Eigen::all);
-    return head_.skin_interpolation * moved;
-  }
-
- private:
-  const HeadTemplate& head_;
-  const Proportions& proportions_;
-  FleshPoser poser_;
-  MusclePulls pulls_;
-  LipControl lips_;
-  LidControl left_lids_, right_lids_;
-};
-
 }  // namespace
 
 std::vector<Expression> make_expressions(const HeadTemplate& head, const Proportions& proportions) {
-  const Studio studio(head, proportions);
+  const ExpressionPlayer player(head, proportions);
   const VectorXi partner = mirror_partners(head.skin.V);
   std::map<std::string, Expression> made;
   MatrixX3d jaw_open;
   for (const ExpressionRecipe& recipe : expression_recipes()) {
-    Expression e{std::string(recipe.name), studio.play(recipe), jaw_pose(recipe, head.jaw)};
+    Expression e{std::string(recipe.name), player.play(recipe), jaw_pose(recipe, head.jaw)};
     if (!recipe.paired) e.displacement = 0.5 * (e.displacement + reflected(e.displacement, partner));
     if (e.name == "jawOpen") jaw_open = e.displacement;
     if (recipe.sealed) {  // what has to be added to the open jaw

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Plays one expression recipe on a head: muscles, lips, lids, jaw and air act, the flesh follows.
+#pragma once
+
+#include "phiz/anatomy/expression_flesh.h"
+#include "phiz/anatomy/expression_lids.h"
+#include "phiz/anatomy/expression_lips.h"
+#include "phiz/anatomy/expression_pulls.h"
+#include "phiz/anatomy/expression_recipes.h"
+#include "phiz/anatomy/head_template.h"
+#include "phiz/anatomy/proportions.h"
+
+namespace phiz {
+
+class ExpressionPlayer {
+ public:
+  /// Keeps references to both arguments. Throws phiz::Error naming what the head lacks.
+  ExpressionPlayer(const HeadTemplate& head, const Proportions& proportions);
+
+  /// Displacement of every vertex of head.skin, metres. A paired recipe acts on the left side.
+  MatrixX3d play(const ExpressionRecipe& recipe) const;
+
+ private:
+  const HeadTemplate& head_;
+  const Proportions& proportions_;
+  FleshPoser poser_;
+  MusclePulls pulls_;
+  LipControl lips_;
+  LidControl left_lids_, right_lids_;
+};
+
+}  // namespace phiz
