@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-#include "phiz/elasticity/projections.h"
+#include "phiz/numerics/polar3-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace phiz {
@@ -21,111 +21,12 @@ using D = hn::CappedTag<double, 8>;
 using Lane = hn::Vec<D>;
 constexpr D d;
 
-/// Cofactor matrix (column-major): det(A) A^-T.
-HWY_INLINE void cofactor(const Lane* A, Lane* C) {
-  C[0] = hn::MulSub(A[4], A[8], hn::Mul(A[5], A[7]));
-  C[1] = hn::MulSub(A[5], A[6], hn::Mul(A[3], A[8]));
-  C[2] = hn::MulSub(A[3], A[7], hn::Mul(A[4], A[6]));
-  C[3] = hn::MulSub(A[2], A[7], hn::Mul(A[1], A[8]));
-  C[4] = hn::MulSub(A[0], A[8], hn::Mul(A[2], A[6]));
-  C[5] = hn::MulSub(A[1], A[6], hn::Mul(A[0], A[7]));
-  C[6] = hn::MulSub(A[1], A[5], hn::Mul(A[2], A[4]));
-  C[7] = hn::MulSub(A[2], A[3], hn::Mul(A[0], A[5]));
-  C[8] = hn::MulSub(A[0], A[4], hn::Mul(A[1], A[3]));
-}
-
-HWY_INLINE Lane dot3(const Lane* a, const Lane* b) {
-  return hn::MulAdd(a[2], b[2], hn::MulAdd(a[1], b[1], hn::Mul(a[0], b[0])));
-}
-
-HWY_INLINE Lane dot9(const Lane* a, const Lane* b) {
-  return hn::Add(dot3(a, b), hn::Add(dot3(a + 3, b + 3), dot3(a + 6, b + 6)));
-}
-
 /// B = A S for a symmetric S: xx, yy, zz, xy, xz, yz.
 HWY_INLINE void times_stretch(const Lane* A, const Lane* S, Lane* B) {
   constexpr int at[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i)
       B[3 * j + i] = hn::MulAdd(A[6 + i], S[at[2][j]], hn::MulAdd(A[3 + i], S[at[1][j]], hn::Mul(A[i], S[at[0][j]])));
-}
-
-/// Replaces the marked lanes of P by scalar(F), the robust projection.
-template <class Projection>
-HWY_NOINLINE void repair(hn::Mask<D> marked, const Lane* F, Lane* P, const Projection& scalar) {
-  constexpr std::size_t most = 8;
-  const std::size_t lanes = hn::Lanes(d);
-  HWY_ALIGN double f[9 * most], p[9 * most], mark[most];
-  for (int k = 0; k < 9; ++k) {
-    hn::Store(F[k], d, f + k * most);
-    hn::Store(P[k], d, p + k * most);
-  }
-  hn::Store(hn::IfThenElseZero(marked, hn::Set(d, 1.0)), d, mark);
-  for (std::size_t l = 0; l < lanes; ++l) {
-    if (mark[l] == 0) continue;
-    Matrix3d A;
-    for (int k = 0; k < 9; ++k) A.data()[k] = f[static_cast<std::size_t>(k) * most + l];
-    const Matrix3d B = A.allFinite() ? Matrix3d(scalar(A)) : Matrix3d(Matrix3d::Identity());
-    for (int k = 0; k < 9; ++k) p[static_cast<std::size_t>(k) * most + l] = B.data()[k];
-  }
-  for (int k = 0; k < 9; ++k) P[k] = hn::Load(d, p + k * most);
-}
-
-/// Rotation of the polar decomposition by Newton's iteration X <- (X + X^-T) / 2.
-HWY_INLINE void polar_rotation(const Lane* G, Lane* R) {
-  for (int k = 0; k < 9; ++k) R[k] = G[k];
-  const Lane half = hn::Set(d, 0.5);
-  const Lane small = hn::Set(d, 1e-3);
-  hn::Mask<D> bad = hn::Lt(hn::Zero(d), hn::Zero(d));
-  bool done = false;
-  for (int i = 0; i < 14 && !done; ++i) {
-    Lane C[9];
-    cofactor(R, C);
-    const Lane det = dot3(R, C);
-    if (i == 0) bad = hn::Not(hn::Gt(det, small));
-    const Lane scale = hn::Div(half, hn::IfThenElse(bad, hn::Set(d, 1.0), det));
-    Lane change = hn::Zero(d);
-    for (int k = 0; k < 9; ++k) {
-      const Lane next = hn::MulAdd(scale, C[k], hn::Mul(half, R[k]));
-      const Lane step = hn::Sub(next, R[k]);
-      change = hn::MulAdd(step, step, change);
-      R[k] = next;
-    }
-    // The error after this step is of the order of the square of its length.
-    done = hn::AllTrue(d, hn::Or(bad, hn::Lt(change, hn::Set(d, 1e-14))));
-    if (i == 13 && !done) bad = hn::Or(bad, hn::Not(hn::Lt(change, hn::Set(d, 1e-14))));
-  }
-  if (!hn::AllFalse(d, bad)) repair(bad, G, R, [](const Matrix3d& A) { return nearest_rotation(A); });
-}
-
-/// Nearest matrix of determinant one by sequential linearisation of det(F + E) = 1 with E parallel to its gradient.
-HWY_INLINE void unimodular(const Lane* F, Lane* P) {
-  const Lane one = hn::Set(d, 1.0);
-  Lane C[9], E[9];
-  for (int k = 0; k < 9; ++k) {
-    P[k] = F[k];
-    E[k] = hn::Zero(d);
-  }
-  hn::Mask<D> bad = hn::Lt(hn::Zero(d), hn::Zero(d));
-  bool done = false;
-  for (int i = 0; i < 20 && !done; ++i) {
-    cofactor(P, C);
-    const Lane det = dot3(P, C);
-    if (i == 0) bad = hn::Not(hn::And(hn::Gt(det, hn::Set(d, 0.3)), hn::Lt(det, hn::Set(d, 3.0))));
-    const Lane length2 = hn::IfThenElse(bad, one, dot9(C, C));
-    const Lane s = hn::Div(hn::Sub(dot9(C, E), hn::Sub(det, one)), length2);
-    Lane change = hn::Zero(d);
-    for (int k = 0; k < 9; ++k) {
-      const Lane next = hn::Mul(s, C[k]);
-      const Lane step = hn::Sub(next, E[k]);
-      change = hn::MulAdd(step, step, change);
-      E[k] = next;
-      P[k] = hn::Add(F[k], next);
-    }
-    done = hn::AllTrue(d, hn::Or(bad, hn::Lt(change, hn::Set(d, 1e-18))));
-    if (i == 19 && !done) bad = hn::Or(bad, hn::Not(hn::Lt(change, hn::Set(d, 1e-18))));
-  }
-  if (!hn::AllFalse(d, bad)) repair(bad, F, P, [](const Matrix3d& A) { return nearest_unimodular(A); });
 }
 
 /// Deformation gradients of the lanes from `l` on of block b; D9: inverse rest edges.
@@ -168,7 +69,7 @@ double EvaluateElements(const ElementBlocks& e, const TermWeights& w, const doub
         Lane S[6], G[9], R[9];
         for (int k = 0; k < 6; ++k) S[k] = hn::Load(d, e.stretch.get() + (b * 6 + k) * 8 + l);
         times_stretch(F, S, G);
-        polar_rotation(G, R);
+        ClosestRotation3(d, G, R);
         times_stretch(R, S, T);
         const Lane shape = hn::Set(d, w.shape);
         for (int k = 0; k < 9; ++k) {
@@ -179,7 +80,7 @@ double EvaluateElements(const ElementBlocks& e, const TermWeights& w, const doub
         }
       }
       if (w.volume != 0) {
-        unimodular(F, T);
+        ClosestUnimodular3(d, F, T);
         const Lane volume = hn::Set(d, w.volume);
         for (int k = 0; k < 9; ++k) {
           const Lane delta = hn::Sub(F[k], T[k]);
@@ -219,8 +120,8 @@ double DeformedVolume(const ElementBlocks& e, const double* rest_volume, const d
       Lane D9[9], F[9], C[9];
       for (int k = 0; k < 9; ++k) D9[k] = hn::Load(d, e.inverse.get() + (b * 9 + k) * 8 + l);
       gradients(e, x, b, l, D9, F);
-      cofactor(F, C);
-      volume = hn::MulAdd(dot3(F, C), hn::Load(d, rest_volume + b * 8 + static_cast<std::ptrdiff_t>(l)), volume);
+      Cofactor3(d, F, C);
+      volume = hn::MulAdd(Dot3(F, C), hn::Load(d, rest_volume + b * 8 + static_cast<std::ptrdiff_t>(l)), volume);
     }
   return hn::GetLane(hn::SumOfLanes(d, volume));
 }

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "phiz/elasticity/projections.h"
+#include "phiz/numerics/svd3.h"
 
 namespace phiz {
 
@@ -12,7 +12,7 @@ namespace {
 constexpr int pairs[3][2] = {{0, 1}, {1, 2}, {2, 0}};
 
 /// u_i v_j^T as a 9-vector.
-Eigen::Matrix<double, 9, 1> outer(const SignedSvd& svd, int i, int j) {
+Eigen::Matrix<double, 9, 1> outer(const Svd3& svd, int i, int j) {
   const Matrix3d m = svd.U.col(i) * svd.V.col(j).transpose();
   return Eigen::Map<const Eigen::Matrix<double, 9, 1>>(m.data());
 }
@@ -20,16 +20,16 @@ Eigen::Matrix<double, 9, 1> outer(const SignedSvd& svd, int i, int j) {
 }  // namespace
 
 double shape_energy(const Matrix3d& F, const Matrix3d& S) {
-  return (F - nearest_rotation(F * S) * S).squaredNorm();
+  return (F - closest_rotation(F * S) * S).squaredNorm();
 }
 
 Matrix3d shape_gradient(const Matrix3d& F, const Matrix3d& S) {
-  return 2 * (F - nearest_rotation(F * S) * S);
+  return 2 * (F - closest_rotation(F * S) * S);
 }
 
 Matrix9d shape_hessian(const Matrix3d& F, const Matrix3d& S) {
   // R(F S) turns in the three twist modes of G = F S only, at the rate 2 / (s_i + s_j) each.
-  const SignedSvd svd = signed_svd(F * S);
+  const Svd3 svd = svd3(F * S);
   Matrix9d H = 2 * Matrix9d::Identity();
   for (const auto& [i, j] : pairs) {
     const Matrix3d twist =
@@ -41,16 +41,16 @@ Matrix9d shape_hessian(const Matrix3d& F, const Matrix3d& S) {
 }
 
 double volume_energy(const Matrix3d& F) {
-  return (F - nearest_unimodular(F)).squaredNorm();
+  return (F - closest_unimodular(F)).squaredNorm();
 }
 
 Matrix3d volume_gradient(const Matrix3d& F) {
-  return 2 * (F - nearest_unimodular(F));
+  return 2 * (F - closest_unimodular(F));
 }
 
 Matrix9d volume_hessian(const Matrix3d& F) {
-  const SignedSvd svd = signed_svd(F);
-  const Vector3d p = nearest_unimodular_values(svd.s);
+  const Svd3 svd = svd3(F);
+  const Vector3d p = closest_unimodular_values(svd.s);
   const double kappa = p[0] * (p[0] - svd.s[0]);
   // From p_i - s_i = kappa / p_i and prod p = 1: dp_i = (ds_i + dkappa / p_i) / a_i with a_i = 1 + kappa / p_i^2, and
   // sum dp_i / p_i = 0 gives dkappa.

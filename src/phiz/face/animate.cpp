@@ -103,20 +103,19 @@ Take empty_take(const FaceModel& model, const Performance& performance, const An
 }
 
 void animate(const FaceModel& model, const Performance& performance, const AnimateOptions& options,
-             const std::vector<TakeFrame>& finished, const FrameCallback& on_frame) {
+             const std::optional<TakeFrame>& last, int finished, const FrameCallback& on_frame) {
   validate(performance, "performance");
   const int end = end_of(performance, options);
   const ExpressionMatch match = match_expressions(model, performance);
   Simulation simulation(model, options.simulation);
   const bool dynamic = options.simulation.dynamic;
   int next = options.first_frame;
-  if (!finished.empty()) {
-    const TakeFrame& last = finished.back();
-    next += static_cast<int>(finished.size());
+  if (finished > 0) {
+    next += finished;
     if (next > end) reject("take", "has more frames than were asked for");
-    if (last.volume.rows() == 0)
+    if (!last || last->volume.rows() == 0)
       reject("take", "its last frame does not hold the volume that is needed to resume", "start anew");
-    simulation.restore({last.volume.cast<double>(), last.velocity.cast<double>(),
+    simulation.restore({last->volume.cast<double>(), last->velocity.cast<double>(),
                         shape_weights(match, performance, next - 1),
                         head_pose(performance, next - 1, options.head_pivot)});
   } else if (dynamic) {
@@ -155,12 +154,12 @@ void animate(const FaceModel& model, const Performance& performance, const Anima
 Take animate(const FaceModel& model, const Performance& performance, const AnimateOptions& options,
              const FrameCallback& on_frame) {
   Take take = empty_take(model, performance, options);
-  animate(model, performance, options, {}, [&](const TakeFrame& frame, int number) {
-    if (!options.keep_volume && !take.frames.empty()) {
+  animate(model, performance, options, std::nullopt, 0, [&](const TakeFrame& frame, int number) {
+    take.frames.push_back(frame);
+    if (!options.keep_volume) {
       take.frames.back().volume.resize(0, 3);
       take.frames.back().velocity.resize(0, 3);
     }
-    take.frames.push_back(frame);
     return !on_frame || on_frame(frame, number);
   });
   return take;

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "phiz/face/performance.h"
@@ -17,7 +19,7 @@ struct AnimateOptions {
   int first_frame = 0;                              ///< of the performance
   int end_frame = -1;                               ///< one past the last one; -1: all
   Vector3d head_pivot = Vector3d(0, -0.03, -0.02);  ///< the head turns about this point, metres
-  bool keep_volume = false;                         ///< keep the volume of every frame, not only what resuming needs
+  bool keep_volume = false;                         ///< keep the volume of the frames of a whole take, for resuming
 };
 
 /// How the columns of a performance meet the shapes of a model.
@@ -41,14 +43,14 @@ Take empty_take(const FaceModel& model, const Performance& performance, const An
 /// Called with each finished frame and its number in the performance; returns false to stop.
 using FrameCallback = std::function<bool(const TakeFrame& frame, int number)>;
 
-/// Plays the frames from `finished.size()` on, where `finished` are the first frames of an earlier run (its last one
-/// must hold `volume`), and calls `on_frame` for each. The result does not depend on where a run was interrupted. A
-/// frame that did not converge is the best state reached and says so. Stops early, without error, when interrupted() or
-/// when the callback says so.
+/// Plays the frames of a performance and calls `on_frame` for each. The result does not depend on where a run was
+/// interrupted: to continue one, give the last of its `finished` frames, which must hold `volume` (and `velocity` in
+/// dynamics). A frame that did not converge is the best state reached and says so. Stops early, without error, when
+/// interrupted() or when the callback says so.
 void animate(const FaceModel& model, const Performance& performance, const AnimateOptions& options,
-             const std::vector<TakeFrame>& finished, const FrameCallback& on_frame);
+             const std::optional<TakeFrame>& last, int finished, const FrameCallback& on_frame);
 
-/// The whole take at once. Its last frame holds what resuming needs.
+/// The whole take at once.
 Take animate(const FaceModel& model, const Performance& performance, const AnimateOptions& options = {},
              const FrameCallback& on_frame = {});
 

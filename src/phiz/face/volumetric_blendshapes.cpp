@@ -10,10 +10,10 @@
 
 #include "phiz/core/error.h"
 #include "phiz/core/progress.h"
-#include "phiz/elasticity/projections.h"
 #include "phiz/face/flesh.h"
 #include "phiz/face/surface_gradients.h"
 #include "phiz/geometry/operators.h"
+#include "phiz/numerics/svd3.h"
 
 namespace phiz {
 
@@ -148,7 +148,7 @@ VolumetricShape shape_of_gradients(const std::string& name, const JawPose& jaw, 
   MatrixX3d logs(tets.size(), 3);
   Eigen::Matrix<double, Eigen::Dynamic, 6> stretches(tets.size(), 6);
   for (Eigen::Index t = 0; t < tets.size(); ++t) {
-    const SignedSvd svd = signed_svd(gradients[static_cast<std::size_t>(t)]);
+    const Svd3 svd = svd3(gradients[static_cast<std::size_t>(t)]);
     const Matrix3d S = svd.V * (svd.s - Vector3d::Ones()).asDiagonal() * svd.V.transpose();
     logs.row(t) = rotation_logarithm(svd.U * svd.V.transpose());
     stretches.row(t) << S(0, 0), S(1, 1), S(2, 2), S(0, 1), S(0, 2), S(1, 2);

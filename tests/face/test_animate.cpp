@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "face/small_face.h"
+#include "phiz/core/error.h"
+#include "phiz/face/animate.h"
+#include "phiz/face/volumetric_blendshapes.h"
+
+namespace phiz {
+namespace {
+
+const FaceModel& model() {
+  static const FaceModel instance = build_volumetric_blendshapes(testing::small_head());
+  return instance;
+}
+
+void expect_same(const TakeFrame& a, const TakeFrame& b) {
+  EXPECT_EQ((a.skin - b.skin).cwiseAbs().maxCoeff(), 0.0F);
+  EXPECT_EQ((a.volume - b.volume).cwiseAbs().maxCoeff(), 0.0F);
+  EXPECT_EQ(a.jaw, b.jaw);
+  EXPECT_EQ(a.head.matrix(), b.head.matrix());
+}
+
+TEST(Animate, AnInterruptedRunResumesToTheIdenticalTake) {
+  const Performance performance = testing::small_performance(14);
+  for (const bool dynamic : {false, true}) {
+    AnimateOptions options;
+    options.keep_volume = true;
+    options.simulation.dynamic = dynamic;
+    const Take whole = animate(model(), performance, options);
+    ASSERT_EQ(whole.frames.size(), 14U);
+    std::vector<TakeFrame> frames;
+    animate(model(), performance, options, std::nullopt, 0, [&](const TakeFrame& frame, int) {
+      frames.push_back(frame);
+      return frames.size() < 5;
+    });
+    ASSERT_EQ(frames.size(), 5U);
+    animate(model(), performance, options, frames.back(), 5, [&](const TakeFrame& frame, int number) {
+      EXPECT_EQ(number, static_cast<int>(frames.size()));
+      frames.push_back(frame);
+      return true;
+    });
+    ASSERT_EQ(frames.size(), 14U);
+    for (std::size_t f = 0; f < frames.size(); ++f) expect_same(frames[f], whole.frames[f]);
+  }
+}
+
+TEST(Animate, EveryFrameIsFreeOfPenetrationAndKeepsItsVolume) {
+  const Take take = animate(model(), testing::small_performance(40));
+  EXPECT_EQ(take.frames_planned, 40);
+  int touching = 0;
+  for (const TakeFrame& frame : take.frames) {
+    EXPECT_LT(frame.statistics.penetration, 1e-4);
+    EXPECT_LT(std::abs(frame.statistics.volume_change), 0.02);
+    EXPECT_TRUE(frame.skin.allFinite());
+    touching += frame.statistics.contacts > 0 ? 1 : 0;
+  }
+  EXPECT_GT(touching, 5);
+}
+
+TEST(Animate, ColumnsAreMatchedByNameAndTheRestIsReported) {
+  const ExpressionMatch match = match_expressions(model(), testing::small_performance(3));
+  EXPECT_EQ(match.column, (std::vector<int>{0, 1, 2}));
+  EXPECT_EQ(match.unmatched, std::vector<std::string>{"browInnerUp"});
+  EXPECT_TRUE(match.undriven.empty());
+}
+
+TEST(Animate, EyeLookWeightsTurnTheEyesWhenNoAnglesWereRecorded) {
+  Performance performance = testing::small_performance(2);
+  performance.expressions = {"eyeLookOutLeft", "eyeLookInRight", "eyeLookUpLeft", "eyeLookUpRight"};
+  performance.weights.row(0) << 1, 1, 0, 0;
+  performance.weights.row(1) << 0, 0, 1, 1;
+  const auto aside = eye_rotations(performance, 0);
+  EXPECT_GT((aside.first * Vector3d::UnitZ()).x(), 0.3);  // both to the person's left
+  EXPECT_GT((aside.second * Vector3d::UnitZ()).x(), 0.3);
+  EXPECT_GT((eye_rotations(performance, 1).first * Vector3d::UnitZ()).y(), 0.3);
+  performance.left_eye(0, 0) = -0.2;
+  EXPECT_LT((eye_rotations(performance, 0).first * Vector3d::UnitZ()).x(), 0.0);
+}
+
+TEST(Animate, FramesOutsideOfThePerformanceAreRefused) {
+  AnimateOptions options;
+  options.first_frame = 5;
+  EXPECT_THROW(animate(model(), testing::small_performance(3), options), Error);
+}
+
+TEST(Performance, ResamplingKeepsTheCurveAndTakesTheShorterArc) {
+  Performance performance = testing::small_performance(31);
+  performance.head(4, 0) = 3.1;
+  performance.head(5, 0) = -3.1;
+  const Performance twice = resample(performance, 60);
+  EXPECT_EQ(twice.time.size(), 61);
+  EXPECT_NEAR(twice.weights(9, 1), 0.5 * (performance.weights(4, 1) + performance.weights(5, 1)), 1e-12);
+  EXPECT_NEAR(std::cos(twice.head(9, 0)), -1, 1e-3);
+  EXPECT_LT((resample(performance, 30).weights - performance.weights).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(Performance, WrongUnitsAndBrokenValuesAreRefused) {
+  const Performance good = testing::small_performance(4);
+  EXPECT_NO_THROW(validate(good, "x"));
+  Performance bad = good;
+  bad.weights(2, 0) = 80;
+  EXPECT_THROW(validate(bad, "x"), Error);
+  bad = good;
+  bad.head(1, 1) = 30;
+  EXPECT_THROW(validate(bad, "x"), Error);
+  bad = good;
+  bad.time[2] = bad.time[1];
+  EXPECT_THROW(validate(bad, "x"), Error);
+  bad = good;
+  bad.weights(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(validate(bad, "x"), Error);
+  bad = good;
+  bad.left_eye.resize(1, 3);
+  EXPECT_THROW(validate(bad, "x"), Error);
+}
+
+TEST(Performance, AnglesTurnAsDocumented) {
+  EXPECT_GT((rotation_from_angles({0.3, 0, 0}) * Vector3d::UnitZ()).x(), 0);  // to the person's left
+  EXPECT_LT((rotation_from_angles({0, 0.3, 0}) * Vector3d::UnitZ()).y(), 0);  // down
+  EXPECT_LT((rotation_from_angles({0, 0, 0.3}) * Vector3d::UnitY()).x(), 0);  // top of the head to the person's right
+}
+
+TEST(Take, PartsGoWithTheirCarriers) {
+  Take take;
+  take.left_eye_centre = Vector3d(0.03, 0.03, 0.05);
+  TakeFrame frame;
+  frame.jaw[0] = 0.2;
+  frame.head.translation() = Vector3d(1, 2, 3);
+  frame.left_eye = Eigen::AngleAxisd(0.3, Vector3d::UnitY()).toRotationMatrix();
+  const auto with = [&](Carrier carrier) { return part_transform(take, frame, {"p", {}, carrier, {}}); };
+  EXPECT_EQ(with(Carrier::skull).matrix(), frame.head.matrix());
+  EXPECT_LT((with(Carrier::mandible).matrix() - (frame.head * jaw_transform(take.joint, frame.jaw)).matrix()).norm(),
+            1e-14);
+  EXPECT_LT((with(Carrier::left_eye) * take.left_eye_centre - (frame.head * take.left_eye_centre)).norm(), 1e-14);
+}
+
+}  // namespace
+}  // namespace phiz
