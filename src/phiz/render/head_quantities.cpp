@@ -35,15 +35,13 @@ VectorXd skin_displacement(const Take& take, const TakeFrame& frame) {
   return millimetres * (frame.skin.cast<double>() - take.skin.V).rowwise().norm();
 }
 
-VectorXd skin_speed(const Take& take, std::size_t frame) {
-  if (frame >= take.frames.size()) reject("take", fmt::format("there is no frame {}", frame));
-  check(take, take.frames[frame]);
-  if (frame == 0) return VectorXd::Zero(take.skin.V.rows());
-  const TakeFrame &now = take.frames[frame], &before = take.frames[frame - 1];
-  check(take, before);
-  const double dt = now.time - before.time;
-  if (!(dt > 0)) return VectorXd::Zero(take.skin.V.rows());
-  return millimetres / dt * (now.skin - before.skin).cast<double>().rowwise().norm();
+VectorXd skin_speed(const TakeFrame& before, const TakeFrame& now) {
+  if (before.skin.rows() != now.skin.rows())
+    reject("take", fmt::format("two frames have {} and {} skin vertices", before.skin.rows(), now.skin.rows()),
+           "animate again");
+  const double seconds = std::abs(now.time - before.time);
+  if (!(seconds > 0)) return VectorXd::Zero(now.skin.rows());
+  return millimetres / seconds * (now.skin - before.skin).cast<double>().rowwise().norm();
 }
 
 VectorXd skin_stretch(const Take& take, const TakeFrame& frame) {

@@ -10,8 +10,8 @@ namespace phiz {
 /// Distance of every skin vertex from its rest position in the head frame, millimetres.
 VectorXd skin_displacement(const Take& take, const TakeFrame& frame);
 
-/// Speed in the head frame between a frame and the one before, millimetres per second; zero for the first.
-VectorXd skin_speed(const Take& take, std::size_t frame);
+/// Speed in the head frame between two frames, millimetres per second; zero when their times are the same.
+VectorXd skin_speed(const TakeFrame& before, const TakeFrame& now);
 
 /// Relative change of the area of skin round every vertex, per cent.
 VectorXd skin_stretch(const Take& take, const TakeFrame& frame);

@@ -2,6 +2,7 @@
 #include "phiz/render/head_view.h"
 
 #include <array>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -22,6 +23,19 @@ constexpr std::array<std::pair<std::string_view, HeadStyle>, 7> styles = {{{"cla
 
 constexpr double average_eye_distance = 0.063;  // metres
 
+/// Adds the eye rotation of an eyeLook* expression.
+void look(const std::string& name, double weight, Vector2d& left, Vector2d& right) {
+  if (name.rfind("eyeLook", 0) != 0) return;
+  constexpr double up_down = 25 * M_PI / 180, sideways = 30 * M_PI / 180;
+  const bool is_left = name.size() > 4 && name.substr(name.size() - 4) == "Left";
+  Vector2d& eye = is_left ? left : right;
+  const auto direction = [&](const char* word) { return name.find(word) != std::string::npos; };
+  if (direction("Up")) eye.y() -= weight * up_down;
+  if (direction("Down")) eye.y() += weight * up_down;
+  if (direction("Out")) eye.x() += weight * (is_left ? sideways : -sideways);
+  if (direction("LookIn")) eye.x() += weight * (is_left ? -sideways : sideways);
+}
+
 }  // namespace
 
 HeadStyle head_style(std::string_view name) {
@@ -38,11 +52,37 @@ Scene head_scene(const HeadTemplate& head, const HeadViewOptions& options) {
   posed.skin = &head.skin;
   posed.skin_now = head.skin.V;
   posed.parts = &head.parts;
-  posed.motion.assign(head.parts.size(), Eigen::Isometry3d::Identity());
   posed.head = &head;
   posed.volume_now = head.volume.V;
   posed.left_eye = head.left_eye_centre;
   posed.right_eye = head.right_eye_centre;
+  JawPose jaw = JawPose::Zero();
+  Vector2d left_look = Vector2d::Zero(), right_look = Vector2d::Zero();  // yaw to the person's left, pitch down
+  for (const auto& [name, weight] : options.expressions) {
+    const Expression* expression = find_expression(head, name);
+    if (expression == nullptr) reject(head.name, "it has no expression '" + name + "'", "phiz inspect lists them");
+    posed.skin_now += weight * expression->displacement;
+    jaw += weight * expression->jaw;
+    look(name, weight, left_look, right_look);
+  }
+  const auto turned = [](const Vector3d& centre, const Vector2d& angles) -> Eigen::Isometry3d {
+    return Eigen::Translation3d(centre) * Eigen::AngleAxisd(angles.x(), Vector3d::UnitY()) *
+           Eigen::AngleAxisd(angles.y(), Vector3d::UnitX()) * Eigen::Translation3d(-centre);
+  };
+  for (const Part& part : head.parts) {
+    posed.motion.push_back(part.carrier == Carrier::mandible    ? jaw_transform(head.jaw, jaw)
+                           : part.carrier == Carrier::left_eye  ? turned(head.left_eye_centre, left_look)
+                           : part.carrier == Carrier::right_eye ? turned(head.right_eye_centre, right_look)
+                                                                : Eigen::Isometry3d::Identity());
+    MatrixX3d deformed;
+    for (const auto& [name, weight] : options.expressions) {
+      const auto shape = part.shapes.find(name);
+      if (shape == part.shapes.end() || shape->second.rows() != part.mesh.V.rows()) continue;
+      if (deformed.rows() == 0) deformed = part.mesh.V;
+      deformed += weight * shape->second;
+    }
+    posed.part_now.push_back(std::move(deformed));
+  }
   return detail::build_scene(posed, options);
 }
 

@@ -2,7 +2,9 @@
 /// Scenes of a head: from its template, or from a frame of a take.
 #pragma once
 
-#include <optional>
+#include <map>
+#include <string>
+#include <string_view>
 
 #include "phiz/anatomy/head_template.h"
 #include "phiz/face/take.h"
@@ -30,13 +32,15 @@ struct HeadViewOptions {
   HeadStyle style = HeadStyle::clay;
   /// Cutaway: the plane in the head frame; what lies on the side of its normal is taken away.
   CutPlane plane{Vector3d(0.004, 0, 0), Vector3d::UnitX()};
-  bool cut_tets = false;    ///< cutaway: draw the outlines of the tets in the cut
-  VectorXd values;          ///< heat: one number per vertex of the drawn skin
-  HeatScale scale;          ///< heat: what its colours mean
-  bool still_head = false;  ///< leave out the head's motion: for close-ups of a take
+  bool cut_tets = false;                      ///< cutaway: draw the outlines of the tets in the cut
+  VectorXd values;                            ///< heat: one number per vertex of the drawn skin
+  HeatScale scale;                            ///< heat: what its colours mean
+  std::map<std::string, double> expressions;  ///< weights of the expressions that a head at rest shows
+  bool still_head = false;                    ///< leave out the head's motion: for close-ups of a take
 };
 
-/// The head at rest.
+/// The head at rest, or with expressions added as they are stored (displacements of the skin, jaw, eyes for eyeLook*).
+/// Throws phiz::Error(bad_input) for an expression that the head does not have.
 Scene head_scene(const HeadTemplate& head, const HeadViewOptions& options);
 
 /// A frame of a take. With the head that it was made with, the skin gets its colours and cut-aways show tissue
@@ -48,7 +52,7 @@ Scene head_scene(const Take& take, const TakeFrame& frame, const HeadViewOptions
 FacePoints face_points(const HeadTemplate& head);
 FacePoints face_points(const Take& take);
 
-/// The camera for a view of the head at rest, or of a whole take: whole-head views leave room for all of its motion.
+/// The camera for a view of the head at rest, or of the frames of a take: whole-head views leave room for their motion.
 Camera head_camera(const HeadTemplate& head, View view, int width, int height);
 Camera take_camera(const Take& take, View view, int width, int height);
 
