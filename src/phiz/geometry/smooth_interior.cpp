@@ -15,15 +15,28 @@ class Star {
  public:
   Star(const TetMesh& mesh, const std::vector<int>& tets, int centre) : mesh_(mesh), tets_(tets), centre_(centre) {}
 
-  double worst_ratio(const Vector3d& p, double give_up_below) const {
-    double worst = std::numeric_limits<double>::infinity();
+  struct Quality {
+    double worst = std::numeric_limits<double>::infinity();  ///< smallest radius ratio
+    double cost = 0;                                         ///< sum of ratio^-4: the worst tets count most, all count
+    bool is_better_than(const Quality& other) const { return cost < other.cost && worst >= other.worst; }
+  };
+
+  /// Stops early, with an infinite cost, once the star is no better than `limit`.
+  Quality quality(const Vector3d& p, const Quality& limit) const {
+    Quality q;
     for (const int t : tets_) {
       Vector3d corner[4];
       for (int k = 0; k < 4; ++k) corner[k] = mesh_.T(t, k) == centre_ ? p : Vector3d(mesh_.V.row(mesh_.T(t, k)));
-      worst = std::min(worst, radius_ratio(corner[0], corner[1], corner[2], corner[3]));
-      if (worst < give_up_below) break;
+      const double ratio = radius_ratio(corner[0], corner[1], corner[2], corner[3]);
+      q.worst = std::min(q.worst, ratio);
+      q.cost += 1 / (ratio * ratio * ratio * ratio);
+      if (!(ratio > 0) || !q.is_better_than(limit)) return {q.worst, std::numeric_limits<double>::infinity()};
     }
-    return worst;
+    return q;
+  }
+
+  Quality quality(const Vector3d& p) const {
+    return quality(p, {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()});
   }
 
   Vector3d mean_of_neighbours() const {
@@ -70,13 +83,13 @@ int smooth_interior(TetMesh& mesh, const std::vector<char>& fixed, int passes) {
       const Star star(mesh, tets_of[static_cast<std::size_t>(v)], v);
       const Vector3d start = mesh.V.row(v);
       Vector3d best = start;
-      double worst = star.worst_ratio(start, -1);
-      if (worst > good_enough) continue;
-      const double before = worst;
+      const Star::Quality before = star.quality(start);
+      if (before.worst > good_enough) continue;
+      Star::Quality reached = before;
       const auto attempt = [&](const Vector3d& p) {
-        const double ratio = star.worst_ratio(p, worst);
-        if (!(ratio > worst)) return false;
-        worst = ratio;
+        const Star::Quality q = star.quality(p, reached);
+        if (!q.is_better_than(reached)) return false;
+        reached = q;
         best = p;
         return true;
       };
@@ -91,7 +104,7 @@ int smooth_interior(TetMesh& mesh, const std::vector<char>& fixed, int passes) {
         if (!attempt(base + step * direction.normalized()) && !attempt(base - step * direction.normalized()))
           step *= 0.8;
       }
-      if (worst > before) {
+      if (reached.is_better_than(before)) {
         mesh.V.row(v) = best;
         ++moved;
       }

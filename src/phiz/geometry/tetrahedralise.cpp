@@ -61,7 +61,8 @@ void check_options(const TetrahedraliseOptions& options) {
     throw Error(ErrorKind::usage, "max_edge, target_tets and smoothing_passes must not be negative");
 }
 
-void check_surfaces(std::span<const RegionSurface> surfaces, const Boundary& all, bool intersections) {
+/// TetGen needs all of this; crossing surfaces make it crash.
+void check_surfaces(std::span<const RegionSurface> surfaces, const Boundary& all) {
   if (surfaces.empty()) reject("tetrahedralise", "there is no surface");
   for (const auto& s : surfaces) {
     validate(s.surface, s.name);
@@ -74,7 +75,6 @@ void check_surfaces(std::span<const RegionSurface> surfaces, const Boundary& all
     if (!(signed_volume(s.surface.V, s.surface.F) > 0))
       reject(s.name, "the surface faces inward", "reverse its triangles");
   }
-  if (!intersections) return;
   const auto pairs = self_intersections({all.V, all.F, {}, {}});
   if (pairs.empty()) return;
   const auto name = [&](int triangle) {
@@ -358,7 +358,7 @@ void check_result(std::span<const RegionSurface> surfaces, const Boundary& all, 
 TetMesh tetrahedralise(std::span<const RegionSurface> surfaces, const TetrahedraliseOptions& options) {
   check_options(options);
   const Boundary all = join(surfaces);
-  check_surfaces(surfaces, all, options.check_self_intersections);
+  check_surfaces(surfaces, all);
   const std::vector<Seed> seeds = find_seeds(surfaces, all);
   TetMesh mesh = mesh_with_target(surfaces, all, seeds, options);
   orient(mesh);

@@ -30,7 +30,6 @@ struct TetrahedraliseOptions {
   std::function<double(const Vector3d&)> sizing;
   int target_tets = 0;       ///< scales the edge lengths until the tet count is within 5 % of this; 0: off
   int smoothing_passes = 4;  ///< passes of quality-improving relocation of interior vertices afterwards
-  bool check_self_intersections = true;
 };
 
 /// Tets between and inside the surfaces. The vertices of the surfaces come first, in the order given; every input
@@ -59,8 +58,9 @@ double radius_ratio(const Vector3d& a, const Vector3d& b, const Vector3d& c, con
 /// Smallest and largest dihedral angle of one tet, degrees.
 std::array<double, 2> dihedral_range(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d);
 
-/// Moves the vertices that are not `fixed` (n flags) to raise the worst radius ratio round them; never inverts a tet
-/// and never lowers the worst ratio of any vertex star. Returns the number of moves made.
+/// Moves the vertices that are not `fixed` (n flags) and have a poor tet (radius ratio below 0.5) round them, to lower
+/// the sum of ratio^-4 there; never inverts a tet and never lowers the worst ratio round a vertex. Returns the number
+/// of moves.
 int smooth_interior(TetMesh& mesh, const std::vector<char>& fixed, int passes);
 
 }  // namespace phiz
