@@ -12,8 +12,7 @@ constexpr int n = SkinTopology::ear_columns;
 /// millimetres.
 constexpr double rim_a[n] = {0, -1.5, -1.5, -1.5, -1.5, -1.5, -0.5, 3.5, 9, 14.5, 19, 21, 20.5, 18.5, 14, 7};
 constexpr double rim_b[n] = {-21, -15, -9, -3, 3, 10, 18, 23.5, 26, 25.5, 20.5, 12.5, 4, -4.5, -13.5, -20};
-constexpr double rim_x[n] = {66.5, 67.7, 68.7, 69.5, 70.2, 70.7, 71.2, 71.8,
-                             72.3, 72.4, 72.2, 71.4, 70.6, 69.6, 68,   67};
+constexpr double rim_x[n] = {68, 69.5, 70.4, 71, 71.4, 71.7, 72, 71.8, 72.3, 72.4, 72.2, 71.4, 70.6, 69.6, 68, 67};
 
 /// Points of the auricle in its own plane: a backwards, b upwards, h out from the head; millimetres. Columns as in
 /// SkinTopology: lobe's front, tragus (2..4), root of the helix (5), top (8), back (11), lobe (15).

@@ -30,7 +30,7 @@ struct SkinForm {
 
 /// The sheet: brow, cheeks, nose, chin, scalp and neck of the mean head.
 void place_sheet(SkinForm& form);
-/// Lips and their surroundings of the mean head: mouth rings 1 to 6.
+/// Lips and their surroundings of the mean head: mouth rings 1 to 7.
 void place_lips(SkinForm& form);
 /// The nostrils' tunnels.
 void place_nostrils(SkinForm& form);
@@ -41,7 +41,7 @@ void place_ears(SkinForm& form, const IdentityParameters& identity);
 void fit_person(SkinForm& form, const Proportions& proportions, const IdentityParameters& identity);
 /// Lids and the socket behind the eyeball: eye rings 1 to 9, from the proportions.
 void place_lids(SkinForm& form, const Proportions& proportions, const IdentityParameters& identity);
-/// The oral cavity: mouth rings 7 to 10 and the throat, from the dental arch.
+/// The oral cavity: mouth rings 8 to 11 and the throat, from the dental arch.
 void place_mouth_bag(SkinForm& form, const Proportions& proportions);
 
 /// Moves the vertices to where the bending energy of the surface plus the weighted squared distance from the places is

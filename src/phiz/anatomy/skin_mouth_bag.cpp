@@ -18,7 +18,7 @@ void place_mouth_bag(SkinForm& form, const Proportions& proportions) {
   const auto& arch = proportions.arch;
   const double half_width = arch.half_width * 1e3 + wall_gap, depth = arch.depth * 1e3 + wall_gap, z0 = arch.z0 * 1e3;
   const double top = arch.upper_sulcus * 1e3, bottom = arch.lower_sulcus * 1e3,
-               middle = form.at(topology.mouth(5, 8)).y();
+               middle = form.at(topology.mouth(6, 8)).y();
   // On the wall in front of the teeth, by the angle along the arch from the midline (degrees).
   const auto wall = [&](double angle, double y, double beyond) {
     const double a = angle * M_PI / 180;
@@ -32,10 +32,10 @@ void place_mouth_bag(SkinForm& form, const Proportions& proportions) {
     for (const bool upper : {true, false}) {
       const int column = upper ? c : 16 - c;
       const double fold = upper ? top : bottom;
-      const double parting = form.at(topology.mouth(6, column)).y();
+      const double parting = form.at(topology.mouth(7, column)).y();
       const double edge = parting + 0.5 * (fold - parting);
-      form.place(topology.mouth(7, column), wall(inner_angle[c], middle + (edge - middle) * inner_rise[c], 0), 1e4);
-      form.place(topology.mouth(8, column),
+      form.place(topology.mouth(8, column), wall(inner_angle[c], middle + (edge - middle) * inner_rise[c], 0), 1e4);
+      form.place(topology.mouth(9, column),
                  wall(sulcus_angle[c], middle + (fold - middle) * sulcus_rise[c], fold_depth), 1e4);
       // Roof and floor: inwards and back; the cheek columns go straight back.
       const double side = c / 8.0;
@@ -43,15 +43,15 @@ void place_mouth_bag(SkinForm& form, const Proportions& proportions) {
       const double x9 = half_width * (0.10 + 0.92 * side) * std::min(1.0, side * 8),
                    x10 = half_width * (0.06 + 0.82 * side) * std::min(1.0, side * 8);
       const double rise9 = std::pow(1 - std::pow(side, 4), 0.5), rise10 = std::pow(1 - std::pow(side, 3), 0.5);
-      form.place(topology.mouth(9, column), {x9, middle + (palate - middle) * rise9, z0 + 17 - 14 * side}, 1e4);
-      form.place(topology.mouth(10, column), {x10, middle + (rear - middle) * rise10, z0 - 4 - 4.5 * side}, 1e4);
+      form.place(topology.mouth(10, column), {x9, middle + (palate - middle) * rise9, z0 + 17 - 14 * side}, 1e4);
+      form.place(topology.mouth(11, column), {x10, middle + (rear - middle) * rise10, z0 - 4 - 4.5 * side}, 1e4);
     }
   for (int u = 0; u < 7; ++u) {
     const double side = u / 8.0;
     form.place(topology.throat(u, 1),
                {half_width * (0.06 + 0.82 * side) * std::min(1.0, side * 8), middle, z0 - 10 + side}, 1e4);
   }
-  for (int ring = 8; ring <= SkinTopology::mouth_rings; ++ring)
+  for (int ring = 9; ring <= SkinTopology::mouth_rings; ++ring)
     for (int c = 0; c <= 16; ++c) form.keep_control(topology.mouth(ring, c));
 }
 

@@ -227,7 +227,14 @@ SparseMatrixd skin_interpolation_between(const SkinSurface& skin, int coarse, in
   }
   mesh.UV.resize(0, 2);
   mesh.face_uvs.clear();
-  const SparseMatrixd to_fine = subdivide(mesh, fine - coarse).limit;
+  const Subdivision finer = subdivide(mesh, fine - coarse);
+  // Subdividing the coarse level afresh numbers the vertices on edges differently from going down from the cage; the
+  // faces keep their order.
+  const Subdivision wanted = subdivide(skin.cage, fine);
+  Eigen::PermutationMatrix<Eigen::Dynamic> renumbering(finer.limit.rows());
+  for (std::size_t f = 0; f < wanted.faces.size(); ++f)
+    for (std::size_t k = 0; k < 4; ++k) renumbering.indices()[finer.faces[f][k]] = wanted.faces[f][k];
+  const SparseMatrixd to_fine = renumbering * finer.limit;
   // Control displacements that reproduce the given ones on the limit: (2 I - B) nearly inverts B, the limit mask.
   SparseMatrixd B = subdivide(mesh, 0).limit;
   SparseMatrixd identity(B.rows(), B.cols());

@@ -68,16 +68,16 @@ SkinRegions skin_regions() {
     regions[std::string("left") + name] = set.left();
     regions[std::string("right") + name] = set.right();
   };
-  both("upperLip", [](RegionSet& s) { s.mouth(3, 7, 0, 8); });
-  both("lowerLip", [](RegionSet& s) { s.mouth(3, 7, 8, 16); });
-  both("upperLipInner", [](RegionSet& s) { s.mouth(6, 8, 0, 7); });
-  both("lowerLipInner", [](RegionSet& s) { s.mouth(6, 8, 9, 16); });
+  both("upperLip", [](RegionSet& s) { s.mouth(3, 8, 0, 8); });
+  both("lowerLip", [](RegionSet& s) { s.mouth(3, 8, 8, 16); });
+  both("upperLipInner", [](RegionSet& s) { s.mouth(7, 9, 0, 7); });
+  both("lowerLipInner", [](RegionSet& s) { s.mouth(7, 9, 9, 16); });
   both("mouthBag", [&](RegionSet& s) {
-    s.mouth(7, SkinTopology::mouth_rings, 0, 16);
+    s.mouth(8, SkinTopology::mouth_rings, 0, 16);
     for (int u = 0; u <= 7; ++u) s.add(t.throat(u, 1));
   });
-  both("oralRoof", [](RegionSet& s) { s.mouth(8, SkinTopology::mouth_rings, 0, 5); });
-  both("oralFloor", [](RegionSet& s) { s.mouth(8, SkinTopology::mouth_rings, 11, 16); });
+  both("oralRoof", [](RegionSet& s) { s.mouth(9, SkinTopology::mouth_rings, 0, 5); });
+  both("oralFloor", [](RegionSet& s) { s.mouth(9, SkinTopology::mouth_rings, 11, 16); });
   both("nose", [&](RegionSet& s) {
     s.sheet(0, 5, 12, 18);
     s.sheet(0, 4, 19, 20);
@@ -132,12 +132,12 @@ SkinRegions skin_regions() {
   const auto loop = [&](const char* name, const std::vector<int>& path) { regions[name] = to_vector(path); };
   std::vector<int> upper, lower;
   for (int c = 8; c > 0; --c) {
-    upper.push_back(t.mirror(t.mouth(5, c)));
-    lower.push_back(t.mirror(t.mouth(5, 16 - c)));
+    upper.push_back(t.mirror(t.mouth(6, c)));
+    lower.push_back(t.mirror(t.mouth(6, 16 - c)));
   }
   for (int c = 0; c <= 8; ++c) {
-    upper.push_back(t.mouth(5, c));
-    lower.push_back(t.mouth(5, 16 - c));
+    upper.push_back(t.mouth(6, c));
+    lower.push_back(t.mouth(6, 16 - c));
   }
   loop("loop:upperLipLine", upper);
   loop("loop:lowerLipLine", lower);
@@ -187,18 +187,18 @@ std::vector<Landmark> skin_landmarks() {
   pair(46, 41, t.eye(5, 11));
   pair(47, 40, t.eye(5, 13));
   // 48..59 outer and 60..67 inner lips.
-  pair(54, 48, t.mouth(4, 8));
+  pair(54, 48, t.mouth(5, 8));
   pair(53, 49, t.mouth(3, 5));
   pair(52, 50, t.mouth(3, 2));
   left(51, t.mouth(3, 0));
   pair(55, 59, t.mouth(3, 11));
   pair(56, 58, t.mouth(3, 14));
   left(57, t.mouth(3, 16));
-  pair(64, 60, t.mouth(5, 8));
-  pair(63, 61, t.mouth(5, 3));
-  left(62, t.mouth(5, 0));
-  pair(65, 67, t.mouth(5, 13));
-  left(66, t.mouth(5, 16));
+  pair(64, 60, t.mouth(6, 8));
+  pair(63, 61, t.mouth(6, 3));
+  left(62, t.mouth(6, 0));
+  pair(65, 67, t.mouth(6, 13));
+  left(66, t.mouth(6, 16));
   std::sort(landmarks.begin(), landmarks.end(),
             [](const Landmark& a, const Landmark& b) { return std::stoi(a.name) < std::stoi(b.name); });
 
@@ -221,7 +221,7 @@ std::vector<Landmark> skin_landmarks() {
   sides("Endocanthion", t.eye(5, 0));
   sides("Exocanthion", t.eye(5, 8));
   sides("Alare", t.sheet(5, 14));
-  sides("Cheilion", t.mouth(4, 8));
+  sides("Cheilion", t.mouth(5, 8));
   sides("Zygion", t.sheet(11, 16));
   sides("Gonion", t.sheet(11, 5));
   sides("Tragion", t.ear(0, 4));

@@ -137,7 +137,7 @@ SkinTopology::SkinTopology() {
   for (int i = 0; i <= 6; ++i) mouth_rim.push_back(sheet_[i][11]);
   for (int j = 10; j >= 7; --j) mouth_rim.push_back(sheet_[6][j]);
   for (int i = 5; i >= 0; --i) mouth_rim.push_back(sheet_[i][7]);
-  add_rings(mouth_, mouth_rim, mouth_rings, false, 5, SkinIsland::outside, SkinIsland::mouth);
+  add_rings(mouth_, mouth_rim, mouth_rings, false, 6, SkinIsland::outside, SkinIsland::mouth);
 
   for (const auto& [u, v] : perimeter(4, 0, 2)) eye_rim.push_back(sheet_[6 + u][18 + v]);
   add_rings(eye_, eye_rim, eye_rings, true, 5, SkinIsland::outside, SkinIsland::left_socket);

@@ -9,7 +9,7 @@
 ///                     .. 22 brow
 ///                     .. 26 round the crown. Behind the ear (i >= 14) rows 12 and 13 are followed by row 20.
 ///   mouth(ring, c)    ring 0 on the sheet .. 3 vermilion border .. 5 front of the parting .. 6 its back .. 8 gum folds
-///   .. 10 throat;
+///   .. 11 throat;
 ///                     c: 0 upper midline .. 8 corner .. 16 lower midline
 ///   eye(ring, c)      ring 0 on the sheet .. 3 crease .. 5 outer edge of the lid margin, 6 its inner edge .. 9 behind
 ///   the
@@ -41,7 +41,7 @@ enum class SkinIsland : int {
 
 class SkinTopology {
  public:
-  static constexpr int columns = 16, rows = 26, mouth_rings = 10, eye_rings = 9, nostril_rings = 3, ear_rings = 6;
+  static constexpr int columns = 16, rows = 26, mouth_rings = 11, eye_rings = 9, nostril_rings = 3, ear_rings = 6;
   static constexpr int mouth_columns = 16, eye_columns = 16, nostril_columns = 8, ear_columns = 16;
 
   SkinTopology();
