@@ -2,9 +2,9 @@
 #include "phiz/render/head_paint.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string_view>
+#include <vector>
 
 #include "phiz/geometry/surface.h"
 
@@ -15,12 +15,13 @@ namespace {
 struct Tint {
   std::string_view region;
   Vector3d colour;
-  double blur;  // metres
+  double blur;        // metres
+  double centre = 1;  // power of the weight: above 1 keeps to the middle of the region
 };
 
-const std::array<Tint, 27>& tints() {
-  static const std::array<Tint, 27> list = {{
-      {"scalp", {0.80, 0.82, 0.86}, 0.012},         {"nose", {1.03, 0.90, 0.88}, 0.006},
+const std::vector<Tint>& tints() {
+  static const std::vector<Tint> list = {
+      {"scalp", {0.86, 0.88, 0.91}, 0.022},         {"nose", {1.03, 0.90, 0.88}, 0.006},
       {"leftCheek", {1.04, 0.90, 0.87}, 0.016},     {"rightCheek", {1.04, 0.90, 0.87}, 0.016},
       {"chin", {1.0, 0.95, 0.94}, 0.010},           {"leftEar", {1.04, 0.86, 0.84}, 0.008},
       {"rightEar", {1.04, 0.86, 0.84}, 0.008},      {"leftUpperLid", {0.97, 0.88, 0.88}, 0.004},
@@ -31,10 +32,10 @@ const std::array<Tint, 27>& tints() {
       {"oralRoof", {0.55, 0.28, 0.30}, 0.001},      {"oralFloor", {0.55, 0.28, 0.30}, 0.001},
       {"leftSocket", {0.92, 0.60, 0.58}, 0.0006},   {"rightSocket", {0.92, 0.60, 0.58}, 0.0006},
       {"leftNostril", {0.75, 0.55, 0.52}, 0.002},   {"rightNostril", {0.75, 0.55, 0.52}, 0.002},
-      {"leftBrow", {0.62, 0.58, 0.58}, 0.0025},     {"rightBrow", {0.62, 0.58, 0.58}, 0.0025},
+      {"leftBrow", {0.30, 0.25, 0.24}, 0.0055, 4},  {"rightBrow", {0.30, 0.25, 0.24}, 0.0055, 4},
       {"neckCap", {0.9, 0.6, 0.55}, 0.001},         {"forehead", {1.0, 0.98, 0.97}, 0.012},
       {"neck", {0.98, 0.96, 0.95}, 0.012},
-  }};
+  };
   return list;
 }
 
@@ -105,8 +106,8 @@ MatrixX3d paint_skin(const TriangleMesh& skin, const std::map<std::string, Vecto
         if (valence[v] > 0) weight[v] = 0.5 * weight[v] + 0.5 * sum[v] / valence[v];
     }
     for (Eigen::Index v = 0; v < n; ++v) {
-      const Eigen::RowVector3d factor =
-          Eigen::RowVector3d::Ones() + weight[v] * (tint.colour.transpose().array() - 1).matrix();
+      const Eigen::RowVector3d factor = Eigen::RowVector3d::Ones() + std::pow(weight[v], tint.centre) *
+                                                                         (tint.colour.transpose().array() - 1).matrix();
       colour.row(v) = colour.row(v).cwiseProduct(factor);
     }
   }
@@ -128,7 +129,7 @@ std::function<Vector3d(const Vector3d&)> eye_pattern(const Vector3d& centre, dou
     const double across = std::clamp((rho - pupil) / (limbus - pupil), 0.0, 1.0);
     const double fibres =
         0.55 * ring_noise(around + 0.05 * std::sin(20 * across), 90, 1) + 0.45 * ring_noise(around, 37, 2);
-    const Vector3d outer(0.075, 0.105, 0.115), inner(0.235, 0.165, 0.085);
+    const Vector3d outer(0.105, 0.145, 0.160), inner(0.300, 0.215, 0.115);
     Vector3d iris = outer + (inner - outer) * (1 - smooth_step(0.15, 0.65, across + 0.25 * (fibres - 0.5)));
     iris *= 0.55 + 0.95 * fibres;
     iris *= 1 - 0.75 * smooth_step(0.74, 1.0, across);  // limbal ring

@@ -16,6 +16,9 @@ VectorXd skin_speed(const TakeFrame& before, const TakeFrame& now);
 /// Relative change of the area of skin round every vertex, per cent.
 VectorXd skin_stretch(const Take& take, const TakeFrame& frame);
 
+/// How deep every skin vertex lies inside the teeth (parts whose name contains "eeth"), millimetres; zero outside.
+VectorXd teeth_penetration(const Take& take, const TakeFrame& frame);
+
 /// Distance from every skin vertex to the nearest bone (boundary of the skull and mandible tets), millimetres.
 VectorXd flesh_thickness(const HeadTemplate& head);
 

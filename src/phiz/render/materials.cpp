@@ -13,7 +13,7 @@ Material clay_material() {
 
 Material skin_material() {
   Material m;
-  m.albedo = {0.60, 0.375, 0.285};
+  m.albedo = {0.645, 0.395, 0.290};
   m.roughness = 0.46;
   m.specular = 0.030;
   m.scatter = {0.42, 0.16, 0.09};

@@ -4,6 +4,9 @@
 #include <algorithm>
 
 #include "phiz/core/error.h"
+#include "phiz/core/parallel.h"
+#include "phiz/geometry/spatial_query.h"
+#include "phiz/render/head_quantities.h"
 #include "phiz/render/head_surfaces.h"
 
 namespace phiz {
@@ -25,7 +28,28 @@ MatrixX3d deformed_part(const Take& take, const TakeFrame& frame, const Part& pa
   return V;
 }
 
+/// Adds how deep points lie inside a closed surface that has moved.
+void add_depth(const Part& part, const Eigen::Isometry3d& motion, const MatrixX3f& points, VectorXd& depth) {
+  if (part.mesh.F.rows() == 0) return;
+  const SurfaceQuery query(part.mesh);
+  Eigen::AlignedBox3d box;
+  for (Eigen::Index i = 0; i < part.mesh.V.rows(); ++i) box.extend(Vector3d(part.mesh.V.row(i)));
+  const Eigen::Isometry3d back = motion.inverse();
+  parallel_for(points.rows(), [&](std::ptrdiff_t i) {
+    const Vector3d p = back * Vector3d(points.row(i).cast<double>());
+    if (box.contains(p)) depth[i] = std::max(depth[i], -1000 * query.signed_distance(p));
+  });
+}
+
 }  // namespace
+
+VectorXd teeth_penetration(const Take& take, const TakeFrame& frame) {
+  VectorXd depth = VectorXd::Zero(frame.skin.rows());
+  for (const Part& part : take.parts)
+    if (part.name.find("eeth") != std::string::npos)
+      add_depth(part, frame.head.inverse() * part_transform(take, frame, part), frame.skin, depth);
+  return depth;
+}
 
 Scene head_scene(const Take& take, const TakeFrame& frame, const HeadViewOptions& options, const HeadTemplate* head) {
   if (frame.skin.rows() != take.skin.V.rows())
