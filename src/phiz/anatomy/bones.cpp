@@ -91,7 +91,7 @@ TriangleMesh surface(const ScalarField& field, const Box& box, double edge_lengt
   PolygoniseOptions options;
   options.edge_length = std::min(edge_length, finest_shape);
   options.lipschitz = 1.5;
-  options.projection_steps = 2;
+  options.projection_steps = 1;
   TriangleMesh mesh = main_part(polygonise(field, box, options), name);
   if (edge_length > finest_shape) {
     const double area = 0.5 * triangle_area_normals(mesh.V, mesh.F).rowwise().norm().sum();
@@ -128,8 +128,6 @@ Fields clipped_fields(const ReferenceWarp& warp, const Room& room, const BoneOpt
             return clip(reference_mandible(q), reference_mandible_struts(q), p);
           }};
 }
-
-constexpr double mandible_share = 0.75;  // the slender mandible takes shorter edges than the skull
 
 /// Moves the vertices of `bone` that lie nearer to the skin than `least` away from it, and those of triangles that skin
 /// vertices come nearer to.
@@ -177,8 +175,8 @@ BoneSurfaces build_bones(const Proportions& proportions, const BoneEnvelope& ski
   const Room room(proportions, skin, options);
   const Fields fields = clipped_fields(warp, room, options, false);
   const Box box = bounds(skin.V);
-  BoneSurfaces bones{surface(fields.skull, box, options.edge_length, "skull"),
-                     surface(fields.mandible, box, mandible_share * options.edge_length, "mandible")};
+  BoneSurfaces bones{surface(fields.skull, box, options.skull_edge, "skull"),
+                     surface(fields.mandible, box, options.mandible_edge, "mandible")};
   keep_clear(bones.skull, simulated_skin, 0.8 * options.inner_clearance);
   keep_clear(bones.mandible, simulated_skin, 0.8 * options.inner_clearance);
   untangle(bones.skull, "skull", 40);
@@ -198,7 +196,7 @@ BoneSurfaces build_drawn_bones(const Proportions& proportions, const BoneEnvelop
   const ScalarField mandible = [&](const Vector3d& p) {
     return implicit::blend(fields.mandible(p), lower_alveolar_process(proportions, p), seam);
   };
-  return {surface(skull, box, options.edge_length, "skull"), surface(mandible, box, options.edge_length, "mandible")};
+  return {surface(skull, box, options.skull_edge, "skull"), surface(mandible, box, options.mandible_edge, "mandible")};
 }
 
 }  // namespace phiz

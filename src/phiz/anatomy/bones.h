@@ -21,7 +21,8 @@ struct BoneEnvelope {
 };
 
 struct BoneOptions {
-  double edge_length = 0.004;       ///< wanted edge of the triangles, metres
+  double skull_edge = 0.0105;  ///< wanted edge of the triangles, metres
+  double mandible_edge = 0.0075;
   double inner_clearance = 0.0015;  ///< between bone and the inner sheets
   double least_flesh = 0.0025;      ///< between bone and the outer skin, wherever the usual thickness is less
   double joint_gap = 0.0016;        ///< between skull and mandible

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "phiz/anatomy/bones.h"
@@ -21,19 +22,21 @@
 namespace phiz {
 namespace {
 
-/// What a size means: levels of the skin, edge lengths in metres, the range of soft tets to hit.
+/// What a size means: level of the skin, edge lengths of the simulated bones (metres), the range of soft tets to hit
+/// and the bound on circumradius / shortest edge to begin with.
 struct SizePlan {
   HeadSize size;
   const char* name;
   int skin_level;
-  double bone_edge, flesh_edge, bone_inside_edge;
+  double skull_edge, mandible_edge;
   int soft_low, soft_high;
+  double radius_edge_ratio;
 };
 constexpr int drawn_level = 2;
 constexpr double drawn_bone_edge = 0.0022;
-constexpr std::array<SizePlan, 3> plans{{{HeadSize::preview, "preview", 0, 0.0100, 0.020, 0.030, 6500, 9500},
-                                         {HeadSize::standard, "standard", 1, 0.0055, 0.012, 0.020, 35000, 40000},
-                                         {HeadSize::fine, "fine", 2, 0.0032, 0.006, 0.014, 150000, 260000}}};
+constexpr std::array<SizePlan, 3> plans{{{HeadSize::preview, "preview", 0, 0.0160, 0.0100, 6500, 9500, 2.5},
+                                         {HeadSize::standard, "standard", 1, 0.0105, 0.0075, 35000, 40000, 2.5},
+                                         {HeadSize::fine, "fine", 2, 0.0055, 0.0040, 150000, 260000, 1.7}}};
 
 const SizePlan& plan_of(HeadSize size) {
   return plans[static_cast<std::size_t>(size)];
@@ -76,20 +79,23 @@ void assign_carriers(HeadTemplate& head, const VectorXi& neck_cap) {
   }
 }
 
-/// Tets between skin and bones, with a number of soft tets inside the plan's range if edge lengths can bring it there.
+/// Tets between skin and bones. Rounder tets are more tets: the bound on their shape brings the number of soft tets
+/// into the plan's range.
 void build_volume(HeadTemplate& head, const SizePlan& plan, const RefinedSkin& skin, const BoneSurfaces& bones) {
-  double flesh_edge = plan.flesh_edge;
-  for (int attempt = 0; attempt < 4; ++attempt) {
-    const std::array<RegionSurface, 3> surfaces{
-        {{"skin", {skin.mesh.V, skin.mesh.F, {}, {}}, Tissue::flesh, false, flesh_edge},
-         {"skull", bones.skull, Tissue::skull, false, plan.bone_inside_edge},
-         {"mandible", bones.mandible, Tissue::mandible, false, plan.bone_inside_edge}}};
-    head.volume = tetrahedralise(surfaces);
+  const std::array<RegionSurface, 3> surfaces{{{"skin", {skin.mesh.V, skin.mesh.F, {}, {}}, Tissue::flesh},
+                                               {"skull", bones.skull, Tissue::skull},
+                                               {"mandible", bones.mandible, Tissue::mandible}}};
+  TetrahedraliseOptions options;
+  options.min_dihedral = 5;
+  options.radius_edge_ratio = plan.radius_edge_ratio;
+  double low = 1.2, high = 6;
+  for (int attempt = 0; attempt < 5; ++attempt) {
+    head.volume = tetrahedralise(surfaces, options);
     assign_carriers(head, skin.regions.at("neckCap"));
-    const double count = static_cast<double>(soft_tet_count(head));
+    const Eigen::Index count = soft_tet_count(head);
     if (count >= plan.soft_low && count <= plan.soft_high) return;
-    const double wanted = 0.5 * (plan.soft_low + plan.soft_high);
-    flesh_edge *= std::clamp(std::pow(count / wanted, 0.7), 0.6, 1.7);
+    (count > plan.soft_high ? low : high) = options.radius_edge_ratio;
+    options.radius_edge_ratio = std::sqrt(low * high);
   }
 }
 
@@ -108,7 +114,7 @@ void add_part(HeadTemplate& head, const char* name, Carrier carrier, TriangleMes
 
 void add_parts(HeadTemplate& head, const Proportions& p, const RefinedSkin& drawn_skin) {
   BoneOptions options;
-  options.edge_length = drawn_bone_edge;
+  options.skull_edge = options.mandible_edge = drawn_bone_edge;
   BoneSurfaces bones = build_drawn_bones(p, envelope(drawn_skin), options);
   add_part(head, "skull", Carrier::skull, std::move(bones.skull));
   add_part(head, "mandible", Carrier::mandible, std::move(bones.mandible));
@@ -168,7 +174,8 @@ HeadTemplate build_builtin_head(const BuiltinOptions& options) {
 
   report("bones");
   BoneOptions bone_options;
-  bone_options.edge_length = plan.bone_edge;
+  bone_options.skull_edge = plan.skull_edge;
+  bone_options.mandible_edge = plan.mandible_edge;
   const BoneSurfaces bones =
       build_bones(proportions, envelope(refine(skin, std::max(1, plan.skin_level))), simulated.mesh, bone_options);
   report("tetrahedra");
