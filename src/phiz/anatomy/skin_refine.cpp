@@ -235,11 +235,12 @@ SparseMatrixd skin_interpolation_between(const SkinSurface& skin, int coarse, in
   for (std::size_t f = 0; f < wanted.faces.size(); ++f)
     for (std::size_t k = 0; k < 4; ++k) renumbering.indices()[finer.faces[f][k]] = wanted.faces[f][k];
   const SparseMatrixd to_fine = renumbering * finer.limit;
-  // Control displacements that reproduce the given ones on the limit: (2 I - B) nearly inverts B, the limit mask.
+  // Control displacements that reproduce the given ones on the limit: 3 I - 3 B + B^2 nearly inverts B, the limit mask.
   SparseMatrixd B = subdivide(mesh, 0).limit;
   SparseMatrixd identity(B.rows(), B.cols());
   identity.setIdentity();
-  const SparseMatrixd correction = 2.0 * identity - B;
+  const SparseMatrixd square = B * B;
+  const SparseMatrixd correction = 3.0 * identity - 3.0 * B + square;
   return (to_fine * correction).pruned();
 }
 
