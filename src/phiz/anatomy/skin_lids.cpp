@@ -71,9 +71,9 @@ void place_lids(SkinForm& form, const Proportions& proportions, const IdentityPa
     const Vector3d around = Vector3d(start.x(), start.y(), 0).normalized();
     const double angle0 = std::acos(std::clamp(start.z(), -1.0, 1.0));
     for (int ring = 7; ring <= 9; ++ring) {
-      constexpr double share[3] = {0.28, 0.58, 0.80}, caruncle_angle[3] = {1.02, 1.72, 2.42};
+      constexpr double share[3] = {0.19, 0.50, 0.78}, caruncle_angle[3] = {1.02, 1.72, 2.42};
       const double angle = caruncle ? caruncle_angle[ring - 7] : angle0 + share[ring - 7] * (M_PI - angle0);
-      const double r = radius + (ring == 7 ? 0.5 : back_clearance);
+      const double r = radius + (ring == 7 ? 0.55 : back_clearance);
       form.place(topology.eye(ring, c),
                  centre + r * Vector3d(std::sin(angle) * around.x(), std::sin(angle) * around.y(), std::cos(angle)),
                  1e4);

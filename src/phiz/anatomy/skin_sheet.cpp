@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <vector>
 
@@ -344,6 +345,16 @@ struct Vault {
   }
 };
 
+/// Point (u, v) of the Coons patch that fills a grid 0..p x 0..q between its border and the midline u = 0.
+Vector3d coons(const SkinForm& form, const std::function<int(int, int)>& vertex, int u, int p, int v, int q) {
+  const auto at = [&](int a, int b) { return form.at(vertex(a, b)); };
+  const double s = static_cast<double>(u) / p, t = static_cast<double>(v) / q;
+  const Vector3d midline = (1 - t) * at(0, 0) + t * at(0, q);
+  const Vector3d corners =
+      (1 - s) * (1 - t) * at(0, 0) + s * (1 - t) * at(p, 0) + (1 - s) * t * at(0, q) + s * t * at(p, q);
+  return (1 - s) * midline + s * at(p, v) + (1 - t) * at(u, 0) + t * at(u, q) - corners;
+}
+
 /// Lays the scalp on the vault, and the grid that closes the crown.
 void place_vault(SkinForm& form) {
   const SkinTopology& topology = skin_topology();
@@ -355,16 +366,10 @@ void place_vault(SkinForm& form) {
       const double share = j == 24 && i < 12 ? 0.5 : 1.0;  // the forehead keeps some of its own form
       form.place(v, form.at(v) + share * (vault.under(form.at(v)) - form.at(v)), 0.5);
     }
-  // The crown is a Coons patch between its border and the midline, lifted to the vault.
-  const auto corner = [&](int u, int v) { return form.at(topology.crown(u, v)); };
-  const double front = corner(0, 0).z(), back = corner(0, 8).z();
   for (int u = 0; u < 4; ++u)
     for (int v = 1; v < 8; ++v) {
-      const double s = u / 4.0, t = v / 8.0;
-      const Vector3d middle(0, 0, (1 - t) * front + t * back);
-      const Vector3d p = (1 - s) * middle + s * corner(4, v) + (1 - t) * corner(u, 0) + t * corner(u, 8) -
-                         ((1 - s) * (1 - t) * corner(0, 0) + s * (1 - t) * corner(4, 0) + (1 - s) * t * corner(0, 8) +
-                          s * t * corner(4, 8));
+      const Vector3d p = coons(
+          form, [&](int a, int b) { return topology.crown(a, b); }, u, 4, v, 8);
       form.place(topology.crown(u, v), {p.x(), vault.top(p.x(), p.z()), p.z()}, 0.5);
     }
 }
@@ -375,7 +380,7 @@ double firmness(int i, int j) {
   if (i == 11 && j > 4 && j < 9) return 0.15;  // angle of the jaw
   if (i > 10) return 0.02;
   if (i == 10 && j > 17) return 0.1;
-  return i > 6 ? 0.4 : 1.0;
+  return i > 6 ? 0.15 : 1.0;
 }
 
 /// Fills the gaps between the places of each row by a cubic curve (Catmull-Rom over the column number).
@@ -423,6 +428,18 @@ void place_sheet(SkinForm& form) {
     }
   for (const Place& p : places) form.place(topology.sheet(p.i, p.j), {p.x, p.y, p.z}, firmness(p.i, p.j));
   fill_rows(form);
+  place_vault(form);
+  for (int u = 0; u <= 6; ++u)
+    for (int v = 0; v <= 4; ++v) {
+      form.keep_control(topology.foot(u, v));
+    }
+  for (int u = 0; u < 6; ++u)
+    for (int v = 1; v < 4; ++v) {
+      Vector3d p = coons(
+          form, [&](int a, int b) { return topology.foot(a, b); }, u, 6, v, 4);
+      p.y() = neck_sections[0].y;
+      form.place(topology.foot(u, v), p);
+    }
   place_vault(form);
   for (int u = 0; u <= 6; ++u)
     for (int v = 0; v <= 4; ++v) {
