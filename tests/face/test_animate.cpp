@@ -32,12 +32,12 @@ TEST(Animate, AnInterruptedRunResumesToTheIdenticalTake) {
     const Take whole = animate(model(), performance, options);
     ASSERT_EQ(whole.frames.size(), 14U);
     std::vector<TakeFrame> frames;
-    animate(model(), performance, options, std::nullopt, 0, [&](const TakeFrame& frame, int) {
+    animate(model(), performance, options, {}, [&](const TakeFrame& frame, int) {
       frames.push_back(frame);
       return frames.size() < 5;
     });
     ASSERT_EQ(frames.size(), 5U);
-    animate(model(), performance, options, frames.back(), 5, [&](const TakeFrame& frame, int number) {
+    animate(model(), performance, options, std::vector<TakeFrame>(frames), [&](const TakeFrame& frame, int number) {
       EXPECT_EQ(number, static_cast<int>(frames.size()));
       frames.push_back(frame);
       return true;

@@ -103,19 +103,20 @@ Take empty_take(const FaceModel& model, const Performance& performance, const An
 }
 
 void animate(const FaceModel& model, const Performance& performance, const AnimateOptions& options,
-             const std::optional<TakeFrame>& last, int finished, const FrameCallback& on_frame) {
+             const std::vector<TakeFrame>& finished, const FrameCallback& on_frame) {
   validate(performance, "performance");
   const int end = end_of(performance, options);
   const ExpressionMatch match = match_expressions(model, performance);
   Simulation simulation(model, options.simulation);
   const bool dynamic = options.simulation.dynamic;
   int next = options.first_frame;
-  if (finished > 0) {
-    next += finished;
+  if (!finished.empty()) {
+    const TakeFrame& last = finished.back();
+    next += static_cast<int>(finished.size());
     if (next > end) reject("take", "has more frames than were asked for");
-    if (!last || last->volume.rows() == 0)
+    if (last.volume.rows() == 0)
       reject("take", "its last frame does not hold the volume that is needed to resume", "start anew");
-    simulation.restore({last->volume.cast<double>(), last->velocity.cast<double>(),
+    simulation.restore({last.volume.cast<double>(), last.velocity.cast<double>(),
                         shape_weights(match, performance, next - 1),
                         head_pose(performance, next - 1, options.head_pivot)});
   } else if (dynamic) {
@@ -154,7 +155,7 @@ void animate(const FaceModel& model, const Performance& performance, const Anima
 Take animate(const FaceModel& model, const Performance& performance, const AnimateOptions& options,
              const FrameCallback& on_frame) {
   Take take = empty_take(model, performance, options);
-  animate(model, performance, options, std::nullopt, 0, [&](const TakeFrame& frame, int number) {
+  animate(model, performance, options, {}, [&](const TakeFrame& frame, int number) {
     take.frames.push_back(frame);
     if (!options.keep_volume) {
       take.frames.back().volume.resize(0, 3);

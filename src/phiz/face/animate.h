@@ -3,7 +3,6 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -44,11 +43,11 @@ Take empty_take(const FaceModel& model, const Performance& performance, const An
 using FrameCallback = std::function<bool(const TakeFrame& frame, int number)>;
 
 /// Plays the frames of a performance and calls `on_frame` for each. The result does not depend on where a run was
-/// interrupted: to continue one, give the last of its `finished` frames, which must hold `volume` (and `velocity` in
-/// dynamics). A frame that did not converge is the best state reached and says so. Stops early, without error, when
-/// interrupted() or when the callback says so.
+/// interrupted: to continue one, give its `finished` frames, of which the last one must hold `volume` (and `velocity`
+/// in dynamics); the others may be empty. A frame that did not converge is the best state reached and says so. Stops
+/// early, without error, when interrupted() or when the callback says so.
 void animate(const FaceModel& model, const Performance& performance, const AnimateOptions& options,
-             const std::optional<TakeFrame>& last, int finished, const FrameCallback& on_frame);
+             const std::vector<TakeFrame>& finished, const FrameCallback& on_frame);
 
 /// The whole take at once.
 Take animate(const FaceModel& model, const Performance& performance, const AnimateOptions& options = {},
