@@ -45,6 +45,8 @@ int run(int argc, char** argv) {
   phiz::add_template(app);
   phiz::add_animate(app);
   phiz::add_export(app);
+  phiz::add_inspect(app);
+  phiz::add_render(app);
 
   try {
     app.parse(argc, argv);
