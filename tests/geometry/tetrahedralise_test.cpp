@@ -85,6 +85,26 @@ TEST(Tetrahedralise, AHoleStaysEmptyAndItsSurfaceBecomesABoundary) {
               1e-15);
 }
 
+TEST(Tetrahedralise, ASurfaceMayHaveSeveralPiecesAndVoids) {
+  const auto join = [](const TriangleMesh& a, const TriangleMesh& b) {
+    TriangleMesh both;
+    both.V.resize(a.V.rows() + b.V.rows(), 3);
+    both.V << a.V, b.V;
+    both.F.resize(a.F.rows() + b.F.rows(), 3);
+    both.F << a.F, b.F.array() + static_cast<int>(a.V.rows());
+    return both;
+  };
+  TriangleMesh cavity = box({0.06, 0.02, 0.02}, {0.07, 0.03, 0.03});
+  cavity.F = cavity.F.rowwise().reverse().eval();
+  const TriangleMesh teeth =
+      join(box({0.01, 0.01, 0.01}, {0.03, 0.04, 0.04}), box({0.05, 0.01, 0.01}, {0.08, 0.04, 0.04}));
+  const std::vector<RegionSurface> surfaces{{"flesh", box({0, 0, 0}, {0.1, 0.05, 0.05}), 1, false, 0},
+                                            {"teeth", join(teeth, cavity), 2, false, 0}};
+  const TetMesh mesh = tetrahedralise(surfaces);
+  EXPECT_NEAR(region_volume(mesh, 2), 0.05 * 9e-4 - 1e-6, 1e-15);
+  EXPECT_NEAR(region_volume(mesh, 1), 0.1 * 25e-4 - 0.05 * 9e-4, 1e-15);
+}
+
 TEST(Tetrahedralise, ThinGapsAreKept) {
   // Two plates a tenth of a millimetre apart inside of a block.
   const std::vector<RegionSurface> surfaces{{"block", box({0, 0, 0}, {0.1, 0.1, 0.1}), 1, false, 0},

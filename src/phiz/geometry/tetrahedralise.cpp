@@ -102,6 +102,10 @@ bool is_too_large(REAL* a, REAL* b, REAL* c, REAL* d, REAL*, REAL) {
   return wanted > 0 && std::abs((p1 - p0).cross(p2 - p0).dot(p3 - p0)) / 6 > regular_tet_volume(wanted);
 }
 
+/// Tets with a larger dihedral angle are improved by flips, degrees. TetGen's own 165 leaves slivers in thin gaps;
+/// smaller values than this gain little.
+constexpr double worst_dihedral = 145;
+
 struct Seed {
   Vector3d position;
   double max_volume = -1;
@@ -175,6 +179,7 @@ TetMesh run_tetgen(const Boundary& all, const std::vector<Seed>& seeds, const st
     tetgenbehavior behavior;
     std::string line = switches;
     if (!behavior.parse_commandline(line.data())) fail("TetGen does not accept the switches " + switches);
+    if (behavior.quality != 0) behavior.optmaxdihedral = worst_dihedral;
     ::tetrahedralize(&behavior, &in, &out, nullptr, nullptr);
   } catch (int code) {
     fail(fmt::format("the tetrahedral mesher failed: {}", reason(code)),
@@ -256,34 +261,46 @@ VectorXi flood(const MatrixX4i& T, const MatrixX3i& F) {
   return component;
 }
 
-/// A point directly inside each surface: the middle of the fattest tet there of a mesh without added points.
+double inradius(const MatrixX3d& V, const MatrixX4i& T, Eigen::Index t) {
+  const Vector3d a = V.row(T(t, 0)), u = V.row(T(t, 1)).transpose() - a, v = V.row(T(t, 2)).transpose() - a,
+                 w = V.row(T(t, 3)).transpose() - a;
+  return u.cross(v).dot(w) / (u.cross(v).norm() + v.cross(w).norm() + w.cross(u).norm() + (v - u).cross(w - u).norm());
+}
+
+/// A point in every part of space that the surfaces enclose: the middle of the fattest tet there of a mesh without
+/// added points. A part that no surface has directly inside of it (a void with triangles facing into it) becomes a
+/// hole.
 std::vector<Seed> find_seeds(std::span<const RegionSurface> surfaces, const Boundary& all) {
   TetMesh mesh = run_tetgen(all, {}, "pYQ", {}, 1);
   orient(mesh);
   const VectorXi component = flood(mesh.T, all.F);
   const std::vector<int> inner = inner_tets(mesh.T, all.F);
-  std::vector<Seed> seeds;
-  for (std::size_t s = 0; s < surfaces.size(); ++s) {
-    const int tet = inner[static_cast<std::size_t>(all.first_triangle[s])];
-    if (tet < 0) fail(fmt::format("the tetrahedral mesher lost a triangle of {}", surfaces[s].name));
-    double best = -1;
-    Seed seed;
-    for (Eigen::Index t = 0; t < mesh.T.rows(); ++t) {
-      if (component[t] != component[tet]) continue;
-      Matrix3d D;
-      for (int k = 0; k < 3; ++k) D.col(k) = (mesh.V.row(mesh.T(t, k + 1)) - mesh.V.row(mesh.T(t, 0))).transpose();
-      const double inradius =
-          D.determinant() / (D.col(0).cross(D.col(1)).norm() + D.col(1).cross(D.col(2)).norm() +
-                             D.col(2).cross(D.col(0)).norm() + (D.col(1) - D.col(0)).cross(D.col(2) - D.col(0)).norm());
-      if (inradius <= best) continue;
-      best = inradius;
-      seed.position =
-          (mesh.V.row(mesh.T(t, 0)) + mesh.V.row(mesh.T(t, 1)) + mesh.V.row(mesh.T(t, 2)) + mesh.V.row(mesh.T(t, 3))) /
-          4;
-    }
-    seed.surface = static_cast<int>(s);
-    seed.hole = surfaces[s].hole;
-    seeds.push_back(seed);
+  std::vector<int> fattest(static_cast<std::size_t>(component.maxCoeff()) + 1, -1);
+  for (int t = 0; t < mesh.T.rows(); ++t) {
+    int& best = fattest[static_cast<std::size_t>(component[t])];
+    if (best < 0 || inradius(mesh.V, mesh.T, t) > inradius(mesh.V, mesh.T, best)) best = t;
+  }
+  std::vector<Seed> seeds(fattest.size());
+  for (std::size_t c = 0; c < seeds.size(); ++c) {
+    const auto corners = mesh.T.row(fattest[c]);
+    seeds[c].position = mesh.V(corners, Eigen::all).colwise().mean();
+    seeds[c].hole = true;
+    seeds[c].surface = -1;
+  }
+  for (std::size_t f = 0; f < inner.size(); ++f) {
+    const int s = all.surface_of_triangle[f];
+    const RegionSurface& surface = surfaces[static_cast<std::size_t>(s)];
+    if (inner[f] < 0)
+      fail(fmt::format("the tetrahedral mesher lost triangle {} of {}",
+                       static_cast<Eigen::Index>(f) - all.first_triangle[static_cast<std::size_t>(s)], surface.name));
+    Seed& seed = seeds[static_cast<std::size_t>(component[inner[f]])];
+    if (seed.surface >= 0 && seed.surface != s)
+      reject(surface.name,
+             fmt::format("it has the same space directly inside of it as {}",
+                         surfaces[static_cast<std::size_t>(seed.surface)].name),
+             "each surface must bound its own space, facing outward");
+    seed.surface = s;
+    seed.hole = surface.hole;
   }
   return seeds;
 }
@@ -292,6 +309,7 @@ TetMesh mesh_at_scale(std::span<const RegionSurface> surfaces, const Boundary& a
                       const TetrahedraliseOptions& options, double scale) {
   bool volumes = false;
   for (Seed& seed : seeds) {
+    if (seed.hole) continue;
     const RegionSurface& s = surfaces[static_cast<std::size_t>(seed.surface)];
     const double edge = s.max_edge > 0 ? s.max_edge : options.max_edge;
     if (edge > 0) {

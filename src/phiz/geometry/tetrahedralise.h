@@ -12,7 +12,8 @@
 
 namespace phiz {
 
-/// A closed, outward, manifold surface. It bounds the region directly inside of it (up to the surfaces nested in it).
+/// A closed, outward, manifold surface, in one or more pieces. It bounds the region directly inside of it (up to the
+/// surfaces nested in it). Space that is inside of a piece facing inward stays empty.
 struct RegionSurface {
   std::string name;  ///< for messages, e.g. "skull"
   TriangleMesh surface;
