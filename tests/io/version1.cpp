@@ -143,13 +143,14 @@ void write_take(const std::string& path, const Take& take) {
       }
     }
     const SolveStatistics& s = f.statistics;
-    numbers.insert(numbers.end(), {s.converged ? 1.0 : 0.0, static_cast<double>(s.iterations), s.residual, s.energy,
-                                   static_cast<double>(s.contacts), s.penetration, s.milliseconds});
+    numbers.insert(numbers.end(),
+                   {s.converged ? 1.0 : 0.0, static_cast<double>(s.iterations), s.residual, s.energy,
+                    static_cast<double>(s.contacts), s.penetration, s.milliseconds, s.volume_change, s.last_step});
     weights.insert(weights.end(), f.part_weights.data(), f.part_weights.data() + f.part_weights.size());
     positions.insert(positions.end(), f.skin.data(), f.skin.data() + f.skin.size());
   }
   const hsize_t frames = take.frames.size();
-  write(data, "numbers", H5T_IEEE_F64LE, {frames, 43}, numbers.data());
+  write(data, "numbers", H5T_IEEE_F64LE, {frames, 45}, numbers.data());
   write(data, "weights", H5T_IEEE_F64LE, {frames, take.expressions.size()}, weights.data());
   write(data, "skin", H5T_IEEE_F32LE, {frames, static_cast<hsize_t>(take.skin.V.rows()), 3}, positions.data());
   H5Gclose(data);

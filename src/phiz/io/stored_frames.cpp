@@ -15,8 +15,9 @@ namespace {
 constexpr double rotation_tolerance = 1e-4;
 
 /// The few numbers of a frame in one row: time, jaw (5), head (3 x 4, row by row), left and right eye (3 x 3, row by
-/// row), statistics (converged, iterations, residual, energy, contacts, penetration, milliseconds).
-constexpr int row_length = 1 + 5 + 12 + 9 + 9 + 7;
+/// row), statistics (converged, iterations, residual, energy, contacts, penetration, milliseconds,
+/// volume change, last step).
+constexpr int row_length = 1 + 5 + 12 + 9 + 9 + 9;
 using FrameRow = Eigen::Matrix<double, row_length, 1>;
 using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 using RowMajor34 = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
@@ -29,8 +30,8 @@ FrameRow row_of(const TakeFrame& frame) {
   Eigen::Map<RowMajor3>(row.data() + 18) = frame.left_eye;
   Eigen::Map<RowMajor3>(row.data() + 27) = frame.right_eye;
   const SolveStatistics& s = frame.statistics;
-  row.tail<7>() << static_cast<double>(s.converged), s.iterations, s.residual, s.energy, s.contacts, s.penetration,
-      s.milliseconds;
+  row.tail<9>() << static_cast<double>(s.converged), s.iterations, s.residual, s.energy, s.contacts, s.penetration,
+      s.milliseconds, s.volume_change, s.last_step;
   return row;
 }
 
@@ -46,8 +47,16 @@ TakeFrame frame_of(const FrameRow& row) {
   frame.head.matrix().topRows<3>() = Eigen::Map<const RowMajor34>(row.data() + 6);
   frame.left_eye = Eigen::Map<const RowMajor3>(row.data() + 18);
   frame.right_eye = Eigen::Map<const RowMajor3>(row.data() + 27);
-  const auto s = row.tail<7>();
-  frame.statistics = {s[0] == 1, count_of(s[1]), s[2], s[3], count_of(s[4]), s[5], s[6]};
+  const auto s = row.tail<9>();
+  frame.statistics.converged = s[0] == 1;
+  frame.statistics.iterations = count_of(s[1]);
+  frame.statistics.residual = s[2];
+  frame.statistics.energy = s[3];
+  frame.statistics.contacts = count_of(s[4]);
+  frame.statistics.penetration = s[5];
+  frame.statistics.milliseconds = s[6];
+  frame.statistics.volume_change = s[7];
+  frame.statistics.last_step = s[8];
   return frame;
 }
 
