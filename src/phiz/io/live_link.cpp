@@ -86,10 +86,10 @@ class RecordingParser {
         if (time_column_ >= 0 && target_[static_cast<std::size_t>(time_column_)] == timecode_column) continue;
         time_column_ = static_cast<int>(c);
       } else if (target_[c] == unknown_column) {
-        if (!table_.header[c].empty()) unknown += (unknown.empty() ? "" : ", ") + quoted(table_.header[c]);
+        if (!table_.header[c].empty()) unknown += (unknown.empty() ? "" : ", ") + quoted_word(table_.header[c]);
       } else if (target_[c] >= 0) {
         bool& seen = found[static_cast<std::size_t>(target_[c])];
-        if (seen) reject(where_ + ":1", fmt::format("column {} appears twice", quoted(table_.header[c])));
+        if (seen) reject(where_ + ":1", fmt::format("column {} appears twice", quoted_word(table_.header[c])));
         seen = true;
       }
     }
@@ -111,8 +111,8 @@ class RecordingParser {
     if (table_.separator != ',') std::replace(field.begin(), field.end(), ',', '.');
     const auto value = parse_number(field);
     if (!value || !std::isfinite(*value)) {
-      reject(here(row), fmt::format("column {}: expected a finite number, found {}", quoted(table_.header[column]),
-                                    quoted(table_.rows[row][column])));
+      reject(here(row), fmt::format("column {}: expected a finite number, found {}", quoted_word(table_.header[column]),
+                                    quoted_word(table_.rows[row][column])));
     }
     return *value;
   }
@@ -134,7 +134,7 @@ class RecordingParser {
     Performance& p = result_.performance;
     const auto frame = static_cast<Eigen::Index>(row);
     const int target = target_[column];
-    const std::string name = quoted(table_.header[column]);
+    const std::string name = quoted_word(table_.header[column]);
     if (target < expression_count) {
       if (std::abs(value) > largest_weight) {
         reject(here(row), fmt::format("column {}: weight {} is far outside of 0 to 1", name, value),
@@ -164,14 +164,15 @@ class RecordingParser {
       std::vector<Timecode> codes;
       for (std::size_t i = 0; i < rows; ++i) {
         const auto code = parse_timecode(table_.rows[i][column]);
-        if (!code) reject(here(i), "expected a time code HH:MM:SS:FF.sub, found " + quoted(table_.rows[i][column]));
+        if (!code)
+          reject(here(i), "expected a time code HH:MM:SS:FF.sub, found " + quoted_word(table_.rows[i][column]));
         codes.push_back(*code);
       }
       rate = timecode_rate(codes);
       time = timecode_seconds(codes, rate);
     } else {
       if (target_[column] == timecode_column && !parse_number(table_.rows[0][column])) {
-        reject(here(0), "expected a time code HH:MM:SS:FF.sub, found " + quoted(table_.rows[0][column]));
+        reject(here(0), "expected a time code HH:MM:SS:FF.sub, found " + quoted_word(table_.rows[0][column]));
       }
       for (std::size_t i = 0; i < rows; ++i) time[i] = number(i, column);
       for (std::size_t i = rows; i-- > 0;) time[i] -= time[0];

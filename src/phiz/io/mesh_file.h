@@ -12,7 +12,7 @@ namespace phiz {
 /// Throws phiz::Error(bad_input); an unknown extension names the known ones.
 PolygonMesh read_mesh(const std::string& path);
 
-/// Writes .obj, .ply, .stl or .glb by the extension. Throws phiz::Error(usage) for another extension.
+/// Writes .obj, .ply, .stl, .gltf or .glb by the extension. Throws phiz::Error(usage) for another extension.
 void write_mesh(const std::string& path, const TriangleMesh& mesh);
 
 /// The unit in which a head-like mesh (a face, a head, a bust) seems to be measured.

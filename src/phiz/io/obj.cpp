@@ -86,15 +86,15 @@ class ObjParser {
 
   double number(std::string_view word) const {
     const auto value = parse_number(word);
-    if (!value) reject(here(), fmt::format("expected a number, found {}", quoted(word)));
-    if (!std::isfinite(*value)) reject(here(), fmt::format("expected a finite number, found {}", quoted(word)));
+    if (!value) reject(here(), fmt::format("expected a number, found {}", quoted_word(word)));
+    if (!std::isfinite(*value)) reject(here(), fmt::format("expected a finite number, found {}", quoted_word(word)));
     return *value;
   }
 
   /// Row from 0 of a one-based or relative index.
   int row(std::string_view word, std::size_t count, std::string_view kind) const {
     const auto index = parse_integer(word);
-    if (!index) reject(here(), fmt::format("expected a {} index, found {}", kind, quoted(word)));
+    if (!index) reject(here(), fmt::format("expected a {} index, found {}", kind, quoted_word(word)));
     if (*index == 0) reject(here(), fmt::format("{} index 0, indices start at 1", kind));
     const auto limit = static_cast<long long>(std::numeric_limits<int>::max());
     const long long value = *index > 0 ? *index - 1 : static_cast<long long>(count) + *index;

@@ -88,7 +88,7 @@ class BodyReader {
   double ascii_value() {
     if (word_ == words_.size()) reject(here(), fmt::format("{} numbers on the line, expected more", words_.size()));
     const auto number = parse_number(words_[word_]);
-    if (!number) reject(here(), "expected a number, found " + quoted(words_[word_]));
+    if (!number) reject(here(), "expected a number, found " + quoted_word(words_[word_]));
     ++word_;
     return *number;
   }

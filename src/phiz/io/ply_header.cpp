@@ -42,7 +42,7 @@ PlyType type_of(std::string_view name, const std::string& where) {
   for (const TypeName& t : type_names) {
     if (t.name == name) return t.type;
   }
-  reject(where, "unknown property type " + quoted(name));
+  reject(where, "unknown property type " + quoted_word(name));
 }
 
 PlyProperty parse_property(const std::vector<std::string_view>& words, const std::string& where) {
@@ -126,14 +126,15 @@ PlyHeader parse_ply_header(std::string_view bytes, const std::string& where) {
       header.order = name == "binary_big_endian" ? std::endian::big : std::endian::little;
       format_known = header.ascii || name == "binary_big_endian" || name == "binary_little_endian";
       if (!format_known) {
-        reject(here, "unknown format " + quoted(name) + ", expected ascii, binary_little_endian or binary_big_endian");
+        reject(here,
+               "unknown format " + quoted_word(name) + ", expected ascii, binary_little_endian or binary_big_endian");
       }
     } else if (words[0] == "element") {
       const auto count = words.size() == 3 ? parse_integer(words[2]) : std::optional<long long>{};
       if (!count || *count < 0) reject(here, "expected 'element NAME COUNT' with a count of 0 or more");
       if (header.elements.size() == most_elements) reject(here, "too many kinds of elements");
       for (const PlyElement& e : header.elements) {
-        if (e.name == words[1]) reject(here, "element " + quoted(words[1]) + " is defined twice");
+        if (e.name == words[1]) reject(here, "element " + quoted_word(words[1]) + " is defined twice");
       }
       header.elements.push_back({std::string(words[1]), static_cast<std::size_t>(*count), {}});
     } else if (words[0] == "property") {
@@ -142,7 +143,7 @@ PlyHeader parse_ply_header(std::string_view bytes, const std::string& where) {
       if (properties.size() == most_properties) reject(here, "too many properties");
       properties.push_back(parse_property(words, here));
     } else {
-      reject(here, "unknown header line " + quoted(words[0]));
+      reject(here, "unknown header line " + quoted_word(words[0]));
     }
   }
   reject(where, "the header has no 'end_header' line", "the file is cut off");

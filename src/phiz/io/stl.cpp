@@ -99,7 +99,7 @@ TriangleMesh parse_ascii(std::string_view text, const std::string& where) {
       for (std::size_t k = 0; k < 3; ++k) {
         const auto value = parse_number(words[k + 1]);
         if (!value || !std::isfinite(*value)) {
-          reject(here(), fmt::format("expected a finite number, found {}", quoted(words[k + 1])));
+          reject(here(), fmt::format("expected a finite number, found {}", quoted_word(words[k + 1])));
         }
         p[k] = *value;
       }
@@ -108,7 +108,7 @@ TriangleMesh parse_ascii(std::string_view text, const std::string& where) {
       if (!welder.between_triangles()) reject(here(), "a loop whose number of vertices is not three");
     } else if (words[0] != "facet" && words[0] != "outer" && words[0] != "endfacet" && words[0] != "solid" &&
                words[0] != "endsolid") {
-      reject(here(), fmt::format("expected an STL keyword, found {}", quoted(words[0])));
+      reject(here(), fmt::format("expected an STL keyword, found {}", quoted_word(words[0])));
     }
   }
   if (!welder.between_triangles()) reject(where, "the file ends inside a triangle", "it may be cut off");

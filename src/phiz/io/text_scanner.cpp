@@ -62,7 +62,7 @@ std::optional<long long> parse_integer(std::string_view word) {
   return value;
 }
 
-std::string quoted(std::string_view word) {
+std::string quoted_word(std::string_view word) {
   constexpr std::size_t longest = 40;
   std::string text = "'";
   for (const char c : word.substr(0, longest)) text += (c >= ' ' && c <= '~') ? c : '?';

@@ -39,7 +39,7 @@ std::optional<double> parse_number(std::string_view word);
 std::optional<long long> parse_integer(std::string_view word);
 
 /// A word for an error message: quoted, shortened, unprintable characters replaced.
-std::string quoted(std::string_view word);
+std::string quoted_word(std::string_view word);
 
 /// Without blanks, tabs and line ends on either side.
 std::string_view trimmed(std::string_view text);

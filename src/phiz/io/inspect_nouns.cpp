@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "phiz/io/inspect_nouns.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "phiz/io/container.h"
+#include "phiz/io/take_file.h"
+
+namespace phiz {
+
+using nlohmann::json;
+
+namespace {
+
+constexpr double to_millimetres = 1e3;
+
+json describe(const HeadTemplate& head) {
+  const auto tets_of = [&head](int tissue) { return (head.volume.region.array() == tissue).count(); };
+  json parts = json::array(), expressions = json::array(), muscles = json::array();
+  for (const Part& part : head.parts) {
+    parts.push_back({{"name", part.name}, {"vertices", part.mesh.V.rows()}, {"triangles", part.mesh.F.rows()}});
+  }
+  for (const Expression& e : head.expressions) expressions.push_back(e.name);
+  for (const Muscle& m : head.muscles) muscles.push_back(m.name);
+  const Eigen::RowVector3d size = head.skin.V.colwise().maxCoeff() - head.skin.V.colwise().minCoeff();
+  return {{"kind", "head"},
+          {"name", head.name},
+          {"provenance", head.provenance},
+          {"tets", head.volume.T.rows()},
+          {"softTets", tets_of(Tissue::flesh)},
+          {"skullTets", tets_of(Tissue::skull)},
+          {"mandibleTets", tets_of(Tissue::mandible)},
+          {"vertices", head.volume.V.rows()},
+          {"skinVertices", head.skin.V.rows()},
+          {"skinTriangles", head.skin.F.rows()},
+          {"sizeMillimetres", {to_millimetres * size[0], to_millimetres * size[1], to_millimetres * size[2]}},
+          {"parts", parts},
+          {"expressions", expressions},
+          {"muscles", muscles},
+          {"landmarks", head.landmarks.size()},
+          {"skullLandmarks", head.skull_landmarks.size()},
+          {"contactPairs", head.contact_pairs.size()}};
+}
+
+/// Value below which the share q of the sorted list lies.
+double quantile(const std::vector<double>& sorted, double q) {
+  const auto last = static_cast<double>(sorted.size() - 1);
+  return sorted[static_cast<std::size_t>(std::lround(q * last))];
+}
+
+json describe_take(const std::string& path) {
+  const TakeReader reader(path);
+  const Take& head = reader.head();
+  std::vector<double> times;
+  double residual = 0, penetration = 0, moved = 0, last = 0, first = 0;
+  int iterations = 0, contacts = 0, unconverged = 0;
+  for (int i = 0; i < reader.frames(); ++i) {
+    const TakeFrame frame = reader.frame(i);
+    const SolveStatistics& s = frame.statistics;
+    times.push_back(s.milliseconds);
+    residual = std::max(residual, s.residual);
+    penetration = std::max(penetration, s.penetration);
+    iterations = std::max(iterations, s.iterations);
+    contacts = std::max(contacts, s.contacts);
+    unconverged += s.converged ? 0 : 1;
+    moved = std::max(moved, (frame.skin.cast<double>() - head.skin.V).rowwise().norm().maxCoeff());
+    first = i == 0 ? frame.time : first;
+    last = frame.time;
+  }
+  json parts = json::array();
+  for (const Part& part : head.parts) parts.push_back(part.name);
+  json result = {{"kind", "take"},
+                 {"model", head.model},
+                 {"frames", reader.frames()},
+                 {"framesPlanned", head.frames_planned},
+                 {"complete", reader.frames() >= head.frames_planned},
+                 {"frameRate", head.frame_rate},
+                 {"durationSeconds", last - first},
+                 {"skinVertices", head.skin.V.rows()},
+                 {"skinTriangles", head.skin.F.rows()},
+                 {"largestMotionMillimetres", to_millimetres * moved},
+                 {"parts", parts}};
+  if (!times.empty()) {
+    std::sort(times.begin(), times.end());
+    result["statistics"] = {{"framesNotConverged", unconverged},
+                            {"iterationsMax", iterations},
+                            {"residualMax", residual},
+                            {"contactsMax", contacts},
+                            {"penetrationMaxMillimetres", to_millimetres * penetration},
+                            {"millisecondsMedian", quantile(times, 0.5)},
+                            {"milliseconds95", quantile(times, 0.95)},
+                            {"millisecondsMax", times.back()}};
+  }
+  return result;
+}
+
+}  // namespace
+
+json describe(const Performance& p) {
+  json used = json::object();
+  for (std::size_t i = 0; i < p.expressions.size(); ++i) {
+    const double largest = p.weights.col(static_cast<Eigen::Index>(i)).maxCoeff();
+    if (largest > 0.01) used[p.expressions[i]] = std::round(1000 * largest) / 1000;
+  }
+  const double duration = p.time.size() > 0 ? p.time[p.time.size() - 1] - p.time[0] : 0;
+  return {{"kind", "performance"},
+          {"frames", p.time.size()},
+          {"frameRate", p.frame_rate},
+          {"durationSeconds", duration},
+          {"expressions", p.expressions.size()},
+          {"largestWeights", used}};
+}
+
+json describe_container(const std::string& path) {
+  switch (kind_of(path)) {
+    case ContainerKind::head_template:
+      return describe(load_head_template(path));
+    case ContainerKind::performance:
+      return describe(load_performance(path));
+    case ContainerKind::take:
+      return describe_take(path);
+    case ContainerKind::face_model:
+      break;
+  }
+  const FaceModel model = load_face_model(path);
+  json result = describe(model.head);
+  result["kind"] = "model";
+  json shapes = json::array();
+  for (const VolumetricShape& shape : model.shapes)
+    shapes.push_back({{"name", shape.name}, {"tets", shape.tets.size()}});
+  result["volumetricShapes"] = shapes;
+  return result;
+}
+
+}  // namespace phiz
