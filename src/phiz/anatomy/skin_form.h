@@ -49,4 +49,8 @@ void place_mouth_bag(SkinForm& form, const Proportions& proportions);
 /// `limit_mask`: positions of the limit surface at the vertices, from the control vertices.
 void fair(SkinForm& form, const SparseMatrixd& limit_mask);
 
+/// Pushes lids and sockets outwards until the surface, sampled by `fine_limit` (rows: vertices of a fine level of the
+/// limit surface, columns: control vertices), keeps clear of the eyeballs.
+void clear_eyeballs(SkinForm& form, const Proportions& proportions, const SparseMatrixd& fine_limit);
+
 }  // namespace phiz

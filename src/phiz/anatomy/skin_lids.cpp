@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "phiz/anatomy/skin_form.h"
 
@@ -71,9 +72,9 @@ void place_lids(SkinForm& form, const Proportions& proportions, const IdentityPa
     const Vector3d around = Vector3d(start.x(), start.y(), 0).normalized();
     const double angle0 = std::acos(std::clamp(start.z(), -1.0, 1.0));
     for (int ring = 7; ring <= 9; ++ring) {
-      constexpr double share[3] = {0.19, 0.50, 0.78}, caruncle_angle[3] = {1.02, 1.72, 2.42};
+      constexpr double share[3] = {0.17, 0.50, 0.78}, caruncle_angle[3] = {1.02, 1.72, 2.42};
       const double angle = caruncle ? caruncle_angle[ring - 7] : angle0 + share[ring - 7] * (M_PI - angle0);
-      const double r = radius + (ring == 7 ? 0.55 : back_clearance);
+      const double r = radius + (ring == 7 ? 0.62 : back_clearance);
       form.place(topology.eye(ring, c),
                  centre + r * Vector3d(std::sin(angle) * around.x(), std::sin(angle) * around.y(), std::cos(angle)),
                  1e4);
@@ -87,6 +88,37 @@ void place_lids(SkinForm& form, const Proportions& proportions, const IdentityPa
       const Vector3d direction = p / 8 - centre - Vector3d(0, 0, 0.2 * radius);
       form.place(topology.socket(u, v), centre + (radius + back_clearance) * direction.normalized(), 1e4);
     }
+}
+
+void clear_eyeballs(SkinForm& form, const Proportions& proportions, const SparseMatrixd& fine_limit) {
+  const SkinTopology& topology = skin_topology();
+  const Vector3d centre = proportions.eye_centre * 1e3;
+  const double least = proportions.eye_radius * 1e3 + 0.12;
+  std::vector<char> movable(topology.vertex_count(), 0);
+  for (int ring = 5; ring <= SkinTopology::eye_rings; ++ring)
+    for (int c = 0; c < n; ++c) movable[topology.eye(ring, c)] = 1;
+  for (int u = 1; u < 4; ++u)
+    for (int v = 1; v < 4; ++v) movable[topology.socket(u, v)] = 1;
+  constexpr int rounds = 20;
+  for (int round = 0; round < rounds; ++round) {
+    const MatrixX3d fine = fine_limit * form.X;
+    MatrixX3d push = MatrixX3d::Zero(form.X.rows(), 3);
+    bool clear = true;
+    for (Eigen::Index f = 0; f < fine.rows(); ++f) {
+      const Vector3d from = fine.row(f).transpose() - centre;
+      if (from.norm() >= least) continue;
+      clear = false;
+      const Vector3d wanted = (least - from.norm() + 0.01) * from.normalized();
+      for (SparseMatrixd::InnerIterator it(fine_limit, f); it;
+           ++it) {  // the largest demand on each control vertex wins
+        const Vector3d share = it.value() * wanted;
+        if (movable[it.col()] && share.norm() > push.row(it.col()).norm()) push.row(it.col()) = share.transpose();
+      }
+    }
+    if (clear) return;
+    for (int v = 0; v < topology.left_count(); ++v)
+      if (movable[v]) form.place(v, form.at(v) + push.row(v).transpose(), form.weight[v]);
+  }
 }
 
 }  // namespace phiz

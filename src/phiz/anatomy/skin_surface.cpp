@@ -19,14 +19,11 @@ PolygonMesh empty_cage() {
   return cage;
 }
 
-/// The limit positions of the cage's vertices from the control vertices; the same for every person.
-const SparseMatrixd& limit_mask() {
-  static const SparseMatrixd mask = [] {
-    PolygonMesh cage = empty_cage();
-    cage.V.setZero(skin_topology().vertex_count(), 3);
-    return subdivide(cage, 0).limit;
-  }();
-  return mask;
+/// The limit positions of the vertices of a level from the control vertices; the same for every person.
+SparseMatrixd limit_of_level(int level) {
+  PolygonMesh cage = empty_cage();
+  cage.V.setZero(skin_topology().vertex_count(), 3);
+  return subdivide(cage, level).limit;
 }
 
 MatrixX3d cage_vertices(const Proportions& proportions, const IdentityParameters& identity) {
@@ -38,7 +35,9 @@ MatrixX3d cage_vertices(const Proportions& proportions, const IdentityParameters
   fit_person(form, proportions, identity);
   place_lids(form, proportions, identity);
   place_mouth_bag(form, proportions);
-  fair(form, limit_mask());
+  static const SparseMatrixd limit_mask = limit_of_level(0), fine_limit = limit_of_level(2);
+  fair(form, limit_mask);
+  clear_eyeballs(form, proportions, fine_limit);
   return form.X * 1e-3;
 }
 
