@@ -56,9 +56,9 @@ const std::array<BarNode, rim_nodes> orbital_rim{{{{13, 33, 60}, 5},
 const std::array<BarNode, 5> zygomatic_arch{
     {{{51.5, 6, 39.5}, 5}, {{56.8, 7.5, 29}, 4.4}, {{58.2, 7.5, 15}, 4}, {{57.5, 7, 0}, 4.2}, {{53, 7, -12}, 6}}};
 const Vector3d arch_section(1.5, 1, 1);
-const std::array<BarNode, 7> mandible_body{{{{46, -43, 8}, 4.4},
-                                            {{43, -50, 17.5}, 5.2},
-                                            {{37, -54.5, 31}, 5.8},
+const std::array<BarNode, 7> mandible_body{{{{44, -43, 8}, 4.6},
+                                            {{40.8, -49.5, 18}, 5.4},
+                                            {{36.8, -54.5, 31}, 5.8},
                                             {{31, -58.2, 43}, 6},
                                             {{20, -62.5, 57}, 5.8},
                                             {{8, -64, 63}, 5.6},
@@ -82,9 +82,9 @@ double midface(const Vector3d& p) {
   const double core = rounded_box(p, {0, 4, 36}, {25, 31, 24}, 13);
   const double sphenoid = rounded_box(p, {0, 12, 8}, {28, 26, 26}, 12);
   const double infraorbital = ellipsoid(p, {26, 2, 50}, {15, 15, 12});
-  const double nasal = capsule(p, {1.5, 37, 61}, {1.5, 18, 77.5}, 5.5, 3.2);
+  const double nasal = capsule(p, {1.5, 37, 61}, {1.5, 21, 74}, 5.5, 3.6);
   const double frontal_process = capsule(p, {9.5, 32, 58}, {14, 4, 61}, 4.5, 4.5);
-  const double beside_nose = capsule(p, {5, 30, 63}, {8, 13, 68.5}, 4, 2.8);
+  const double beside_nose = capsule(p, {5, 30, 63}, {8, 14, 67.5}, 4.2, 3);
   const double spine = capsule(p, {0, -9.5, 64}, {0, -7.5, 75.5}, 4, 1.2);
   const double pterygoid = capsule(p, {16, -2, 15}, {17, -24, 15}, 6, 3.5);
   double f = blend(core, sphenoid, 12);
@@ -140,7 +140,7 @@ double temporal_fossa(const Vector3d& p) {
 
 /// Cervical column: a shaft; when `detailed`, bodies, transverse and spinous processes of its vertebrae.
 double cervical_column(const Vector3d& p, bool detailed) {
-  constexpr double top = -14, pitch = 19, bottom = -150;
+  constexpr double top = -14, pitch = 19, bottom = -146;
   const double s = std::clamp((top - p.y()) / (top - bottom), 0.0, 1.0);
   const double z = -24 + 10 * s - 22 * s * s;  // lordosis
   const double ends = std::max(p.y() - top - 6, bottom - p.y());
@@ -162,7 +162,7 @@ double mandible_mm(const Vector3d& p) {
   // Ramus: a plate, thin in x.
   const double c = std::cos(0.12), s = std::sin(0.12);
   const double y = p.y() + 26, z = p.z() - 9.5;
-  const Vector3d q(p.x() - (47.2 + 0.03 * (p.y() + 26)), c * y + s * z, -s * y + c * z);
+  const Vector3d q(p.x() - (47.3 + 0.05 * (p.y() + 26) - 0.16 * p.z()), c * y + s * z, -s * y + c * z);
   double ramus = rounded_box(q, Vector3d::Zero(), {3.5, 26, 14.5}, 3.4);
   const double notch = capsule(p, {30, 1, 9.5}, {70, 1, 9.5}, 8.5, 8.5);
   ramus = carve(ramus, notch, 4);
@@ -173,7 +173,7 @@ double mandible_mm(const Vector3d& p) {
       p, std::array<BarNode, 3>{{{{47, -22, 17}, 6}, {{47, -8, 18.5}, 4.5}, {{46.5, 2, 18}, 2}}}, {1.6, 1, 1});
   const double neck = capsule(p, {50, -1, 0}, {48, -18, 0.5}, 4, 4.6);
   const double head = ellipsoid(p, {50, 0, 0}, {8.6, 4.3, 4.6});
-  const double angle = ellipsoid(p, {47.5, -44, 6}, {3.6, 9, 9});
+  const double angle = ellipsoid(p, {45.3, -44, 6}, {3.6, 9, 9});
   f = blend(f, ramus, 6);
   f = blend(f, blend(coronoid, blend(neck, head, 3), 4), 5);
   return blend(f, angle, 6);
@@ -222,12 +222,12 @@ std::vector<Vector3d> warp_landmarks(const Proportions& q) {
 }
 
 double arch_process(const Proportions& person, const Vector3d& p, double inset, double thickness, double low,
-                    double high) {
+                    double high, double rise) {
   const Proportions::DentalArch& a = person.arch;
   const double outer = arch_offset(p, a.half_width - inset, a.depth - inset, a.z0);
   const double ribbon = std::abs(outer + 0.5 * thickness) - 0.5 * thickness;
-  const double slab = std::max(p.y() - high, low - p.y());
-  const double back = a.z0 - 0.011 - p.z();
+  const double slab = std::max(p.y() - high, low + rise * (a.z0 + a.depth - p.z()) - p.y());
+  const double back = a.z0 - 0.008 - p.z();
   return implicit::intersect(implicit::intersect(ribbon, slab, 0.003), back, 0.003);
 }
 
@@ -269,12 +269,13 @@ double reference_skull_struts(const Vector3d& p) {
   const Vector3d q = left_mm(p);
   const double rim = implicit::bar(q, orbital_rim, {1, 1, 1}) + 1.2;
   const double arch = implicit::bar(q, zygomatic_arch, arch_section) + 0.3;
-  return 1e-3 * carve(std::min(rim, arch), orbit(q) - 0.3, 1);
+  const double nose = capsule(q, {1.5, 37, 60}, {1.5, 21, 73}, 4.5, 2.6);
+  return 1e-3 * carve(std::min({rim, arch, nose}), orbit(q) - 0.3, 1);
 }
 
 double reference_mandible_struts(const Vector3d& p) {
   const Vector3d q = left_mm(p);
-  return 1e-3 * std::max(mandible_mm(q) + 0.8, -24 - q.y());
+  return 1e-3 * (mandible_mm(q) + 0.8 + 0.09 * std::max(0.0, -15 - q.y()));
 }
 
 double reference_mandible(const Vector3d& p) {
@@ -283,12 +284,12 @@ double reference_mandible(const Vector3d& p) {
 
 double upper_alveolar_process(const Proportions& person, const Vector3d& p) {
   const Proportions::DentalArch& a = person.arch;
-  return arch_process(person, p, 0.0022, 0.0065, a.upper_gum - 0.001, a.upper_sulcus + 0.006);
+  return arch_process(person, p, 0.0022, 0.0065, a.upper_gum - 0.001, a.upper_sulcus + 0.006, 0);
 }
 
 double lower_alveolar_process(const Proportions& person, const Vector3d& p) {
   const Proportions::DentalArch& a = person.arch;
-  return arch_process(person, p, 0.0022 + a.lower_inset, 0.0062, a.lower_sulcus - 0.006, a.lower_gum + 0.001);
+  return arch_process(person, p, 0.0022 + a.lower_inset, 0.0062, a.lower_sulcus - 0.006, a.lower_gum + 0.001, 0.28);
 }
 
 }  // namespace phiz

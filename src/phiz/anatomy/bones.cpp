@@ -29,36 +29,64 @@ MatrixX3i all_triangles(const BoneEnvelope& skin) {
   return F;
 }
 
-/// Room for bone: positive where bone may be, metres.
-class Room {
+/// Room for bone at a point: positive where bone may be, metres.
+struct Room {
+  double usual;  ///< under flesh of the usual thickness
+  double least;  ///< under the least flesh
+};
+
+/// Measures the room that the skin leaves.
+class RoomQuery {
  public:
-  Room(const Proportions& proportions, const BoneEnvelope& skin, const BoneOptions& options)
+  RoomQuery(const Proportions& proportions, const BoneEnvelope& skin, const BoneOptions& options)
       : options_(options),
         thickness_(proportions),
-        whole_(skin.V, all_triangles(skin)),
+        outer_count_(skin.outer.rows()),
+        F_(all_triangles(skin)),
+        normals_(vertex_normals(skin.V, F_)),
+        whole_(skin.V, F_),
         outer_(skin.V, skin.outer),
         inner_(skin.V, skin.inner) {}
 
-  /// `struts`: bone here may come up to the least flesh.
-  double operator()(const Vector3d& p, bool struts) const {
-    const double flesh = struts ? options_.least_flesh : std::max(options_.least_flesh, thickness_(p));
-    const double outer = distance(outer_, p), inner = distance(inner_, p);
-    if (std::min(outer, inner) < overshoot && !whole_.is_inside(p))
-      return outer < inner ? -outer - flesh : -inner - options_.inner_clearance;
-    return std::min(outer - flesh, inner - options_.inner_clearance);
+  Room operator()(const Vector3d& p) const {
+    const double usual = std::max(options_.least_flesh, thickness_(p)), least = options_.least_flesh;
+    const auto near = whole_.closest_point_within(p, reach);
+    if (!near) return {reach - usual, reach - least};
+    const double distance = std::sqrt(near->squared_distance);
+    const bool is_inner = near->triangle >= outer_count_;
+    if (distance < overshoot && !is_inside(p, *near)) {
+      const double inner = -distance - options_.inner_clearance;
+      return is_inner ? Room{inner, inner} : Room{-distance - usual, -distance - least};
+    }
+    const double outer = is_inner ? other(outer_, p, distance) : distance;
+    const double inner = (is_inner ? distance : other(inner_, p, distance)) - options_.inner_clearance;
+    return {std::min(outer - usual, inner), std::min(outer - least, inner)};
   }
 
  private:
   static constexpr double reach = 0.025;      // nothing farther away matters
   static constexpr double overshoot = 0.010;  // no bone shape reaches farther out of the skin
 
-  static double distance(const SurfaceQuery& sheet, const Vector3d& p) {
+  static double other(const SurfaceQuery& sheet, const Vector3d& p, double at_least) {
     const auto near = sheet.closest_point_within(p, reach);
-    return near ? std::sqrt(near->squared_distance) : reach;
+    return near ? std::max(at_least, std::sqrt(near->squared_distance)) : reach;
+  }
+
+  /// By the normal of the nearest point; where that is not clear, by the winding number.
+  bool is_inside(const Vector3d& p, const SurfacePoint& near) const {
+    Vector3d normal = Vector3d::Zero();
+    for (int k = 0; k < 3; ++k) normal += near.barycentric(k) * normals_.row(F_(near.triangle, k)).transpose();
+    const Vector3d away = p - near.position;
+    const double along = normal.dot(away);
+    if (std::abs(along) > 0.5 * normal.norm() * away.norm()) return along < 0;
+    return whole_.is_inside(p);
   }
 
   BoneOptions options_;
   ThicknessField thickness_;
+  Eigen::Index outer_count_;
+  MatrixX3i F_;
+  MatrixX3d normals_;
   SurfaceQuery whole_, outer_, inner_;
 };
 
@@ -109,12 +137,12 @@ struct Fields {
 };
 
 /// Bone shapes of the person, cut to the room that the skin leaves.
-Fields clipped_fields(const ReferenceWarp& warp, const Room& room, const BoneOptions& options, bool detailed) {
+Fields clipped_fields(const ReferenceWarp& warp, const RoomQuery& room, const BoneOptions& options, bool detailed) {
   constexpr double soft = 0.002, far = 0.0025, deep = 0.02;
   const auto clip = [&room](double f, double struts, const Vector3d& p) {
     if (f > far || f < -deep) return f;
-    const double usual = implicit::intersect(f, -room(p, false), soft);
-    return usual < 0 || struts > far ? usual : std::min(usual, implicit::intersect(struts, -room(p, true), 0.5 * soft));
+    const Room here = room(p);
+    return std::min(implicit::intersect(f, -here.usual, soft), implicit::intersect(struts, -here.least, 0.5 * soft));
   };
   return {[&warp, clip, &options, detailed](const Vector3d& p) {
             const Vector3d q = warp(p);
@@ -172,7 +200,7 @@ void keep_clear(TriangleMesh& bone, const TriangleMesh& skin, double least) {
 BoneSurfaces build_bones(const Proportions& proportions, const BoneEnvelope& skin, const TriangleMesh& simulated_skin,
                          const BoneOptions& options) {
   const ReferenceWarp warp(proportions);
-  const Room room(proportions, skin, options);
+  const RoomQuery room(proportions, skin, options);
   const Fields fields = clipped_fields(warp, room, options, false);
   const Box box = bounds(skin.V);
   BoneSurfaces bones{surface(fields.skull, box, options.skull_edge, "skull"),
@@ -186,7 +214,7 @@ BoneSurfaces build_bones(const Proportions& proportions, const BoneEnvelope& ski
 
 BoneSurfaces build_drawn_bones(const Proportions& proportions, const BoneEnvelope& skin, const BoneOptions& options) {
   const ReferenceWarp warp(proportions);
-  const Room room(proportions, skin, options);
+  const RoomQuery room(proportions, skin, options);
   const Fields fields = clipped_fields(warp, room, options, true);
   const Box box = bounds(skin.V);
   constexpr double seam = 0.0015;

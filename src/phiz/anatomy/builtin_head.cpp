@@ -45,8 +45,9 @@ const SizePlan& plan_of(HeadSize size) {
 /// Outer skin and inner sheets of a refined skin.
 BoneEnvelope envelope(const RefinedSkin& skin) {
   std::vector<char> inner(skin.mesh.V.rows(), 0);
-  for (const char* name : {"mouthBag", "oralRoof", "oralFloor", "upperLipInner", "lowerLipInner", "leftSocket",
-                           "rightSocket", "leftNostril", "rightNostril"}) {
+  for (const char* name :
+       {"mouthBag", "oralRoof", "oralFloor", "upperLipInner", "lowerLipInner", "leftSocket", "rightSocket",
+        "leftNostril", "rightNostril", "leftUpperLid", "leftLowerLid", "rightUpperLid", "rightLowerLid"}) {
     const auto found = skin.regions.find(name);
     if (found == skin.regions.end()) continue;
     for (const int v : found->second) inner[v] = 1;

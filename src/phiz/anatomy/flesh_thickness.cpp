@@ -38,7 +38,7 @@ std::vector<ThicknessSite> thickness_sites(const Proportions& p) {
       {"temple", {0.93 * zyg.x(), eye.y() + 18 * mm, zyg.z()}, 10.0 * mm, false},
       {"zygion", zyg, 6.0 * mm, false},
       {"euryon", p.euryon, 6.0 * mm, false},
-      {"midRamus", {1.12 * jaw.x(), 0.5 * jaw.y(), jaw.z() + 8 * mm}, 14.0 * mm, true},
+      {"midRamus", {1.12 * jaw.x(), 0.5 * jaw.y(), jaw.z() + 8 * mm}, 10.0 * mm, true},
       {"gonion", jaw, 8.0 * mm, true},
       {"midMandibularBorder", 0.5 * (jaw + chin), 8.5 * mm, true},
   };
@@ -96,7 +96,7 @@ std::vector<SkullLandmark> find_skull_landmarks(const HeadTemplate& head, const 
     landmark.bone_vertex = best;
     landmark.normal = normals.row(best);
     const auto hit = skin_query.first_hit(head.volume.V.row(best), landmark.normal, 0, 0.05);
-    if (!hit) continue;
+    if (!hit || hit->t > 2 * site.thickness + 0.003) continue;
     landmark.thickness_mean = hit->t;
     landmark.thickness_deviation = std::max(0.0015, 0.3 * hit->t);
     Eigen::Index corner = 0;

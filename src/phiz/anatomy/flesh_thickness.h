@@ -34,7 +34,7 @@ class ThicknessField {
 
 /// The skull landmarks of `head`, which has its volume, carriers and skin: for each site the bone vertex below it, its
 /// normal, the thickness along the normal up to the skin, as this head has it, and a deviation of 30 % (at least
-/// 1.5 mm). Sites whose normal misses the skin are left out.
+/// 1.5 mm). Sites without bone in their place are left out.
 std::vector<SkullLandmark> find_skull_landmarks(const HeadTemplate& head, const Proportions& proportions);
 
 }  // namespace phiz

@@ -18,11 +18,12 @@ int untangle(TriangleMesh& mesh, const std::string& name, int passes) {
     for (const auto& [a, b] : crossings) {
       for (int k = 0; k < 3; ++k) moving[mesh.F(a, k)] = moving[mesh.F(b, k)] = 1;
     }
-    if (pass > 4) {
+    for (int ring = 0; ring < pass / 5; ++ring) {
       const std::vector<char> core = moving;
-      for (std::size_t v = 0; v < core.size(); ++v)
-        if (core[v])
-          for (const int w : neighbours[v]) moving[w] = 1;
+      for (std::size_t v = 0; v < core.size(); ++v) {
+        if (!core[v]) continue;
+        for (const int w : neighbours[v]) moving[w] = 1;
+      }
     }
     const MatrixX3d before = mesh.V;
     for (std::size_t v = 0; v < moving.size(); ++v) {

@@ -8,8 +8,8 @@
 
 namespace phiz {
 
-/// Smooths the triangles that cross others, and after a few passes also their neighbours, until none does. Returns the
-/// number of smoothing passes made; throws phiz::Error(failure) naming `name` when `passes` do not suffice.
+/// Smooths the triangles that cross others, with a ring of neighbours more every five passes, until none does. Returns
+/// the number of smoothing passes made; throws phiz::Error(failure) naming `name` when `passes` do not suffice.
 int untangle(TriangleMesh& mesh, const std::string& name, int passes);
 
 }  // namespace phiz
