@@ -18,16 +18,17 @@ using Factor = Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>>;
 
 constexpr double rigidity = 1.0;           ///< weight of |F - R|^2
 constexpr double incompressibility = 2.0;  ///< weight of |F - P|^2, P the nearest matrix of determinant 1
+constexpr double dermis = 8;               ///< stiffness of tets with a face on the skin, relative to the flesh below
 
 /// Rotation of the polar decomposition of F, from the estimate `q` (Mueller et al. 2016).
 void follow_rotation(const Matrix3d& F, Eigen::Quaterniond& q) {
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < 4; ++i) {
     const Matrix3d R = q.toRotationMatrix();
     const Vector3d torque = R.col(0).cross(F.col(0)) + R.col(1).cross(F.col(1)) + R.col(2).cross(F.col(2));
     const double hold = std::abs(R.col(0).dot(F.col(0)) + R.col(1).dot(F.col(1)) + R.col(2).dot(F.col(2))) + 1e-9;
     const Vector3d omega = torque / hold;
     const double angle = omega.norm();
-    if (angle < 1e-7) break;
+    if (angle < 1e-5) break;
     q = Eigen::Quaterniond(Eigen::AngleAxisd(angle, omega / angle)) * q;
     q.normalize();
   }
@@ -75,7 +76,8 @@ struct FleshPoser::State {
   }
 };
 
-FleshPoser::FleshPoser(const TetMesh& volume, const VectorXi& carrier) : state_(std::make_unique<State>()) {
+FleshPoser::FleshPoser(const TetMesh& volume, const VectorXi& carrier, const VectorXi& skin_vertices)
+    : state_(std::make_unique<State>()) {
   State& s = *state_;
   s.rest = volume.V;
   s.carrier = carrier;
@@ -90,6 +92,13 @@ FleshPoser::FleshPoser(const TetMesh& volume, const VectorXi& carrier) : state_(
   for (std::size_t i = 0; i < kept.size(); ++i) s.tets.row(static_cast<Eigen::Index>(i)) = volume.T.row(kept[i]);
   const TetRest rest = tet_rest(s.rest, s.tets);
   s.stiffness = (rigidity + incompressibility) * rest.volume;
+  std::vector<char> skin(static_cast<std::size_t>(s.rest.rows()), 0);
+  for (const int v : skin_vertices) skin[static_cast<std::size_t>(v)] = 1;
+  for (Eigen::Index t = 0; t < s.tets.rows(); ++t) {
+    int corners = 0;
+    for (int k = 0; k < 4; ++k) corners += skin[static_cast<std::size_t>(s.tets(t, k))];
+    if (corners >= 3) s.stiffness[t] *= dermis;
+  }
   for (const Matrix3d& inverse : rest.inverse_edges) s.hats.push_back(hat_gradients(inverse));
 
   std::vector<char> used(static_cast<std::size_t>(s.rest.rows()), 0);

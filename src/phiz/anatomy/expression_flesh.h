@@ -31,8 +31,9 @@ struct Obstacle {
 class FleshPoser {
  public:
   /// `carrier`: Carrier per vertex of `volume`; flesh vertices are free, the others move with skull or mandible.
+  /// Tets at `skin_vertices` are stiffer than those below: the dermis spreads a pull over its surroundings.
   /// Throws phiz::Error when a tet is not positive or no vertex is carried.
-  FleshPoser(const TetMesh& volume, const VectorXi& carrier);
+  FleshPoser(const TetMesh& volume, const VectorXi& carrier, const VectorXi& skin_vertices);
   ~FleshPoser();
   FleshPoser(FleshPoser&&) noexcept;
   FleshPoser& operator=(FleshPoser&&) noexcept;

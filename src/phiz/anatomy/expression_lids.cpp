@@ -70,6 +70,16 @@ LidControl::LidControl(const HeadTemplate& head, const EyeShape& eye, const std:
   };
   upper_angle_ = margin_angles(upper);
   lower_angle_ = margin_angles(lower);
+  const auto margin_height = [&](const MatrixX3d& loop, double a) {  // of the outer edge of the margin, near `a`
+    double sum = 0, weights = 0;
+    for (Eigen::Index i = 0; i < loop.rows(); ++i) {
+      const Vector3d p = loop.row(i);
+      const double w = std::exp(-std::pow((across(p) - a) / 0.08, 2)) + 1e-12;
+      sum += w * (p - eye_.centre).norm();
+      weights += w;
+    }
+    return sum / weights;
+  };
 
   for (Eigen::Index i = 0; i < head.skin_vertices.size(); ++i) {
     const int v = head.skin_vertices[i];
@@ -78,7 +88,7 @@ LidControl::LidControl(const HeadTemplate& head, const EyeShape& eye, const std:
     if (distance > eye_.radius + 0.010) continue;
     near_.emplace_back(v, distance);
     if ((X - eye_.centre).dot(ahead_) < 0.15 * eye_.radius) continue;
-    LidVertex lid{v, across(X), elevation(X), 0, 0, true, X};
+    LidVertex lid{v, across(X), elevation(X), 0, 0, distance, true, X};
     const double top = sample(upper_angle_, lid.across), bottom = sample(lower_angle_, lid.across);
     lid.upper = lid.elevation > 0.5 * (top + bottom);
     const double beyond = lid.upper ? lid.elevation - top : bottom - lid.elevation;
@@ -87,6 +97,7 @@ LidControl::LidControl(const HeadTemplate& head, const EyeShape& eye, const std:
     lid.follow =
         (1 - smoothstep(6 * degree, (lid.upper ? 66 : 55) * degree, beyond)) * (1 - smoothstep(0, 0.006, aside));
     lid.weight = 8 * (1 - smoothstep(10 * degree, 48 * degree, beyond)) * near * (1 - smoothstep(0.001, 0.006, aside));
+    lid.flat = std::min(distance, margin_height(lid.upper ? upper : lower, std::clamp(lid.across, 0.0, 1.0)) + 0.0003);
     if (lid.weight > 0) vertices_.push_back(lid);
   }
 }
@@ -111,6 +122,9 @@ std::vector<Handle> LidControl::handles(const LidMotion& motion) const {
     const double turn = v.upper ? -motion.upper * fissure : motion.lower * fissure;
     Vector3d d = Eigen::AngleAxisd(lift * v.follow * turn, axis_) * (v.rest - eye_.centre);
     d = Eigen::AngleAxisd(sign_ * motion.sideways * v.follow * degree, Vector3d::UnitY()) * d;
+    // The fold above the eye unrolls and lies flat on the globe.
+    const double drawn = smoothstep(0, 25 * degree, std::abs(v.follow * turn)) * ((turn < 0) == v.upper ? 1 : 0);
+    d *= 1 - drawn * (1 - v.flat / (v.rest - eye_.centre).norm());
     const Vector3d direction = d.normalized(), before = (v.rest - eye_.centre).normalized();
     d += direction * (eye_.bulge(direction, look) - eye_.bulge(before, Vector3d::UnitZ()));
     result.push_back({v.vertex, eye_.centre + d, v.weight});

@@ -41,6 +41,7 @@ class LidControl {
     double elevation;  ///< angle about the canthal axis, radians, 0 straight ahead, positive up
     double follow;     ///< how far it goes with its margin, 1 to 0
     double weight;
+    double flat;  ///< distance from the middle of the eye that it sinks to when its lid is drawn over the eye
     bool upper;
     Vector3d rest;
   };

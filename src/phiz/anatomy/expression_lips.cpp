@@ -54,9 +54,11 @@ LipControl::LipControl(const HeadTemplate& head) {
     const int v = head.skin_vertices[i];
     const Vector3d X = head.volume.V.row(v).transpose();
     const double distance = std::sqrt((line_.rowwise() - X.transpose()).rowwise().squaredNorm().minCoeff());
-    const double share = 1 - smoothstep(0.005, 0.013, distance);
-    if (share <= 0 || head.carrier[v] != static_cast<int>(Carrier::flesh)) continue;
-    LipVertex entry{v, std::clamp((X.x() - centre) / half, -1.2, 1.2), share, true, X};
+    const double grip = 1 - smoothstep(0.005, 0.015, distance);
+    if (grip <= 0 || head.carrier[v] != static_cast<int>(Carrier::flesh)) continue;
+    LipVertex entry{v, std::clamp((X.x() - centre) / half, -1.2, 1.2), grip, 0, 0, true, X};
+    entry.follow = 1 - smoothstep(0.004, 0.032, distance);
+    entry.lip = 1 - smoothstep(0.006, 0.013, distance);
     const Frame frame = frame_at(entry.along);
     const auto k = static_cast<std::size_t>(i);
     entry.upper = in_upper[k] || (!in_lower[k] && (X - frame.middle).dot(frame.up) > 0);
@@ -85,15 +87,17 @@ std::vector<Handle> LipControl::handles(const ExpressionRecipe& recipe, const Ei
   for (const LipVertex& v : vertices_) {
     const LipMotion& motion = v.upper ? recipe.upper_lip : recipe.lower_lip;
     const double side = recipe.paired ? smoothstep(-0.3, 0.35, v.along) : 1;
-    const double weight = recipe.sealed ? 6 * v.share : motion.hold * v.share * side;
+    const double weight = recipe.sealed ? 6 * v.grip : motion.hold * v.grip * side;
     if (weight <= 0) continue;
     const LipSection m = section(motion, v.along);
     const Frame f = frame_at(v.along);
     const Vector3d axis_point = f.middle - 4 * mm * f.out + (v.upper ? 3 : -3) * mm * f.up;
-    const double roll = (v.upper ? -1 : 1) * side * m.roll * std::numbers::pi / 180;
+    const double roll = (v.upper ? -1 : 1) * side * v.lip * m.roll * std::numbers::pi / 180;
     const Vector3d rolled = axis_point + Eigen::AngleAxisd(roll, f.along) * (v.rest - axis_point);
-    const Vector3d moved =
-        rolled + side * mm * (m.up * f.up + m.out * f.out + m.wide * std::clamp(v.along * 4, -1.0, 1.0) * f.along);
+    const Vector3d forward = (f.out + 2 * Vector3d::UnitZ()).normalized();
+    const double sideways = std::clamp(4 * v.along, -1.0, 1.0);
+    const Vector3d way = m.up * f.up + m.out * forward + m.wide * sideways * Vector3d::UnitX();
+    const Vector3d moved = rolled + side * v.follow * mm * way;
     // The lower lip rides on the jaw, less so towards the corners; sealed lips share its way between them.
     const double q = std::min(1.0, v.along * v.along);
     const double ride = recipe.sealed ? 0.5 : v.upper ? 0.45 * q * q : 1 - 0.55 * q * q;

@@ -24,9 +24,11 @@ class LipControl {
  private:
   /// One skin vertex near the mouth.
   struct LipVertex {
-    int vertex;    ///< row of volume.V
-    double along;  ///< -1 right corner, 0 centre, 1 left corner
-    double share;  ///< how far it belongs to the lip: 1 near the parting line, 0 at 13 mm
+    int vertex;     ///< row of volume.V
+    double along;   ///< -1 right corner, 0 centre, 1 left corner
+    double grip;    ///< how firmly the ring of the lips holds it: 1 near the parting line, 0 at 15 mm
+    double follow;  ///< share of the lip's way that it goes: 1 near the line, 0 at 32 mm
+    double lip;     ///< how far it belongs to the body of the lip, which rolls
     bool upper;
     Vector3d rest;
   };

@@ -7,14 +7,14 @@
 namespace phiz {
 namespace {
 
-constexpr int iterations = 40;
+constexpr int iterations = 30;
 
 }  // namespace
 
 ExpressionPlayer::ExpressionPlayer(const HeadTemplate& head, const Proportions& proportions)
     : head_(head),
       proportions_(proportions),
-      poser_(head.volume, head.carrier),
+      poser_(head.volume, head.carrier, head.skin_vertices),
       pulls_(head),
       lips_(head),
       left_lids_(head, {head.left_eye_centre, proportions.eye_radius}, "left"),

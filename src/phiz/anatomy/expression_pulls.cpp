@@ -10,8 +10,8 @@
 namespace phiz {
 namespace {
 
-constexpr double reach_distance = 0.008;  ///< metres
-constexpr double pull_weight = 0.5;       ///< of a handle on the fibre at its insertion
+constexpr double reach_distance = 0.012;  ///< metres
+constexpr double pull_weight = 0.4;       ///< of a handle on the fibre at its insertion
 
 VectorXd arc_lengths(const MatrixX3d& fibre) {
   VectorXd s(fibre.rows());
@@ -85,7 +85,7 @@ MusclePulls::MusclePulls(const HeadTemplate& head) : rest_(head.volume.V) {
         }
       }
       if (best.fibre < 0) continue;
-      best.weight = 1 - smoothstep(0.2 * reach_distance, reach_distance, std::sqrt(distance));
+      best.weight = 1 - smoothstep(0.1 * reach_distance, reach_distance, std::sqrt(distance));
       bundle.reach.push_back(best);
     }
     bundles_.emplace(muscle.name, std::move(bundle));

@@ -15,7 +15,7 @@ namespace phiz {
 
 class MusclePulls {
  public:
-  /// Uses the fibres of head.muscles; flesh vertices within 8 mm of a fibre go with it.
+  /// Uses the fibres of head.muscles; flesh vertices within 12 mm of a fibre go with it.
   explicit MusclePulls(const HeadTemplate& head);
 
   /// Handles of all pulls of a recipe. In a paired recipe names without a side mean the left muscle.

@@ -95,22 +95,22 @@ std::vector<ExpressionRecipe> lip_ring_recipes() {
        .pulls = {{"orbicularisOris", 0.10}},
        .upper_lip = {{.up = 3.5, .out = 6.5, .roll = 14},
                      {.up = 2.8, .out = 6, .wide = -3.5, .roll = 12},
-                     {.out = 3.5, .wide = -7},
+                     {.out = 4, .wide = -7.5},
                      4},
        .lower_lip = {{.up = -4.5, .out = 7, .roll = 16},
                      {.up = -3.6, .out = 6.3, .wide = -3.5, .roll = 14},
-                     {.out = 3.5, .wide = -7},
+                     {.out = 4, .wide = -7.5},
                      4}},
       // AU18
       {.name = "mouthPucker",
        .pulls = {{"orbicularisOris", 0.16}},
-       .upper_lip = {{.up = 0.8, .out = 8, .roll = 8},
-                     {.up = 0.8, .out = 7, .wide = -5, .roll = 8},
-                     {.out = 4.5, .wide = -10},
+       .upper_lip = {{.up = 0.4, .out = 6.5, .roll = 6},
+                     {.up = 0.4, .out = 6, .wide = -4, .roll = 6},
+                     {.out = 5, .wide = -9.5},
                      4},
-       .lower_lip = {{.up = -0.6, .out = 8, .roll = 8},
-                     {.up = -0.6, .out = 7, .wide = -5, .roll = 8},
-                     {.out = 4.5, .wide = -10},
+       .lower_lip = {{.up = -0.3, .out = 6.5, .roll = 6},
+                     {.up = -0.3, .out = 6, .wide = -4, .roll = 6},
+                     {.out = 5, .wide = -9.5},
                      4}},
       // AU28, one lip at a time
       {.name = "mouthRollLower",
@@ -151,9 +151,9 @@ std::vector<ExpressionRecipe> mouth_pull_recipes() {
       // AU12
       {.name = "mouthSmileLeft",
        .paired = true,
-       .pulls = {{"zygomaticusMajor", 0.24},
-                 {"zygomaticusMinor", 0.12},
-                 {"levatorAnguliOris", 0.12},
+       .pulls = {{"zygomaticusMajor", 0.34},
+                 {"zygomaticusMinor", 0.18},
+                 {"levatorAnguliOris", 0.20},
                  {"orbicularisOculi", 0.06, Part::lower, 0.5, 1}},
        .lids = {.lower = 0.08}},
       // AU15
@@ -161,11 +161,11 @@ std::vector<ExpressionRecipe> mouth_pull_recipes() {
        .paired = true,
        .pulls = {{"depressorAnguliOris", 0.30}, {"platysma", 0.02}, {"mentalis", 0.05}}},
       // AU14
-      {.name = "mouthDimpleLeft", .paired = true, .pulls = {{"buccinator", 0.18}, {"risorius", 0.08}}},
+      {.name = "mouthDimpleLeft", .paired = true, .pulls = {{"buccinator", 0.30}, {"risorius", 0.12}}},
       // AU20
       {.name = "mouthStretchLeft",
        .paired = true,
-       .pulls = {{"risorius", 0.30}, {"platysma", 0.06, Part::whole, 0.4, 1}, {"depressorAnguliOris", 0.06}}},
+       .pulls = {{"risorius", 0.50}, {"platysma", 0.06, Part::whole, 0.4, 1}, {"depressorAnguliOris", 0.06}}},
       // AU16
       {.name = "mouthLowerDownLeft",
        .paired = true,
@@ -179,7 +179,7 @@ std::vector<ExpressionRecipe> mouth_pull_recipes() {
       // The whole mouth drawn aside: the muscles of one cheek pull, those of the other yield.
       {.name = "mouthLeft",
        .paired = true,
-       .pulls = {{"zygomaticusMajor", 0.06}, {"risorius", 0.18}, {"buccinator", 0.14}}},
+       .pulls = {{"zygomaticusMajor", 0.10}, {"risorius", 0.30}, {"buccinator", 0.22}}},
   };
 }
 

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "phiz/anatomy/builtin_head.h"
+#include "phiz/anatomy/expression_names.h"
+#include "phiz/anatomy/expression_recipes.h"
+#include "phiz/geometry/surface.h"
+
+namespace phiz {
+namespace {
+
+const HeadTemplate& head() {
+  static const HeadTemplate built = build_builtin_head({.size = HeadSize::standard});
+  return built;
+}
+
+const Expression& expression(const std::string& name) {
+  const Expression* found = find_expression(head(), name);
+  EXPECT_NE(found, nullptr) << name;
+  return *found;
+}
+
+int vertex(int mark) {
+  for (const Landmark& landmark : head().landmarks)
+    if (landmark.name == std::to_string(mark)) return landmark.skin_vertex;
+  ADD_FAILURE() << "no landmark " << mark;
+  return 0;
+}
+
+/// Displacement of one of the 68 marks, millimetres.
+Vector3d shift(const std::string& name, int mark) {
+  return 1e3 * expression(name).displacement.row(vertex(mark)).transpose();
+}
+
+/// Position of a mark in an expression, millimetres.
+Vector3d place(const std::string& name, int mark) {
+  return 1e3 * head().skin.V.row(vertex(mark)).transpose() + shift(name, mark);
+}
+
+double largest(const std::string& name, const std::string& region) {
+  double most = 0;
+  for (const int v : head().skin_regions.at(region))
+    most = std::max(most, 1e3 * expression(name).displacement.row(v).norm());
+  return most;
+}
+
+/// Triangles that the expression folds over: their normal opposes that of their neighbourhood.
+int folded_triangles(const MatrixX3d& V) {
+  const MatrixX3i& F = head().skin.F;
+  const MatrixX3d faces = triangle_area_normals(V, F), normals = vertex_normals(V, F);
+  int count = 0;
+  for (Eigen::Index f = 0; f < F.rows(); ++f) {
+    const Vector3d around = (normals.row(F(f, 0)) + normals.row(F(f, 1)) + normals.row(F(f, 2))).transpose();
+    count += faces.row(f).dot(around.transpose()) < 0;
+  }
+  return count;
+}
+
+// Marks: 17-21 right brow, 22-26 left brow (22 inner), 31-35 nostrils, 42 inner and 45 outer corner of the left eye,
+// 48 right and 54 left corner of the mouth, 51 top and 57 bottom of the lips, 62 and 66 their parting, 8 chin.
+constexpr int chin = 8, left_inner_brow = 22, left_outer_brow = 25, left_ala = 35, right_corner = 48, left_corner = 54,
+              lip_top = 51, lip_bottom = 57, parting_above = 62, parting_below = 66, left_upper_lip = 53,
+              left_lower_lip = 55;
+
+TEST(Expressions, AllFiftyTwoArePresentInTheirOrderAndFinite) {
+  ASSERT_EQ(head().expressions.size(), expression_names.size());
+  for (std::size_t i = 0; i < expression_names.size(); ++i) {
+    const Expression& e = head().expressions[i];
+    EXPECT_EQ(e.name, expression_names[i]);
+    ASSERT_EQ(e.displacement.rows(), head().skin.V.rows());
+    EXPECT_TRUE(e.displacement.allFinite()) << e.name;
+    const double most = 1e3 * e.displacement.rowwise().norm().maxCoeff();
+    EXPECT_GT(most, 0.5) << e.name;
+    EXPECT_LT(most, 60) << e.name;
+  }
+}
+
+TEST(Expressions, RightOnesAreMirrorImagesOfLeftOnes) {
+  const MatrixX3d& V = head().skin.V;
+  std::map<std::array<long, 3>, int> at;  // by position rounded to a micrometre, x reflected
+  const auto key = [&](int v, double sign) {
+    return std::array<long, 3>{std::lround(sign * V(v, 0) * 1e6), std::lround(V(v, 1) * 1e6),
+                               std::lround(V(v, 2) * 1e6)};
+  };
+  for (int v = 0; v < V.rows(); ++v) at[key(v, -1)] = v;
+  int compared = 0;
+  for (const std::string_view name : expression_names) {
+    const std::string other = other_side(name);
+    const Expression &e = expression(std::string(name)), &m = expression(other);
+    EXPECT_NEAR(e.jaw[0], m.jaw[0], 1e-12);
+    EXPECT_NEAR(e.jaw[1], -m.jaw[1], 1e-12);
+    for (int v = 0; v < V.rows(); ++v) {
+      const auto found = at.find(key(v, 1));
+      if (found == at.end()) continue;
+      ++compared;
+      const Vector3d wanted(-e.displacement(v, 0), e.displacement(v, 1), e.displacement(v, 2));
+      ASSERT_LT((m.displacement.row(found->second).transpose() - wanted).norm(), 1e-9) << name << " vertex " << v;
+    }
+  }
+  EXPECT_GT(compared, 52 * V.rows() * 9 / 10);
+}
+
+TEST(Expressions, MoveWhatTheirNamesSay) {
+  struct Claim {
+    const char* name;
+    int mark;
+    Vector3d direction;
+    double at_least;  // millimetres
+  };
+  const Vector3d up(0, 1, 0), left(1, 0, 0), forward(0, 0, 1);
+  const std::vector<Claim> claims = {
+      {"jawForward", chin, forward, 3},
+      {"jawLeft", chin, left, 4},
+      {"jawRight", chin, -left, 4},
+      {"jawOpen", chin, -up, 20},
+      {"mouthFunnel", lip_top, forward, 3},
+      {"mouthFunnel", parting_above, up, 1.5},
+      {"mouthFunnel", parting_below, -up, 1.5},
+      {"mouthPucker", lip_top, forward, 4},
+      {"mouthPucker", lip_bottom, forward, 4},
+      {"mouthLeft", lip_top, left, 3},
+      {"mouthRight", lip_top, -left, 3},
+      {"mouthSmileLeft", left_corner, up, 4},
+      {"mouthSmileLeft", left_corner, left, 3},
+      {"mouthFrownLeft", left_corner, -up, 4},
+      {"mouthDimpleLeft", left_corner, left, 2},
+      {"mouthStretchLeft", left_corner, left, 4},
+      {"mouthRollLower", lip_bottom, -forward, 0.5},
+      {"mouthRollUpper", lip_top, -forward, 0.5},
+      {"mouthShrugLower", lip_bottom, up, 2},
+      {"mouthShrugLower", lip_bottom, forward, 1},
+      {"mouthShrugUpper", lip_top, up, 1.5},
+      {"mouthLowerDownLeft", left_lower_lip, -up, 3},
+      {"mouthUpperUpLeft", left_upper_lip, up, 3},
+      {"browDownLeft", left_inner_brow, -up, 2},
+      {"browInnerUp", left_inner_brow, up, 3},
+      {"browOuterUpLeft", left_outer_brow, up, 3},
+      {"noseSneerLeft", left_ala, up, 2},
+  };
+  for (const Claim& claim : claims)
+    EXPECT_GT(shift(claim.name, claim.mark).dot(claim.direction), claim.at_least)
+        << claim.name << " moves mark " << claim.mark << " by " << shift(claim.name, claim.mark).transpose() << " mm";
+}
+
+TEST(Expressions, LeaveFarRegionsStill) {
+  for (const std::string_view name : expression_names) EXPECT_LT(largest(std::string(name), "scalp"), 1.5) << name;
+  for (const char* name : {"eyeBlinkLeft", "eyeSquintLeft", "browDownLeft", "noseSneerLeft", "browOuterUpLeft"}) {
+    EXPECT_LT(largest(name, "lowerLip"), 0.6) << name;
+    EXPECT_LT(largest(name, "rightCheek"), 0.6) << name;
+  }
+  for (const char* name : {"jawOpen", "mouthPucker", "mouthSmileLeft", "mouthFunnel"})
+    EXPECT_LT(largest(name, "leftBrow"), 1.0) << name;
+}
+
+TEST(Expressions, BlinkClosesTheLidsWithoutCuttingTheEyeball) {
+  const auto curve = [](const char* loop) {
+    MatrixX3d points(head().skin_regions.at(loop).size(), 3);
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+      const int v = head().skin_regions.at(loop)[i];
+      points.row(i) = head().skin.V.row(v) + expression("eyeBlinkLeft").displacement.row(v);
+    }
+    return points;
+  };
+  const MatrixX3d upper = curve("loop:leftUpperLidMargin"), lower = curve("loop:leftLowerLidMargin");
+  for (Eigen::Index i = 0; i < upper.rows(); ++i) {
+    double nearest = 1;
+    for (Eigen::Index j = 0; j + 1 < lower.rows(); ++j) {
+      const Vector3d a = lower.row(j), e = lower.row(j + 1).transpose() - a, p = upper.row(i);
+      const double t = std::clamp((p - a).dot(e) / e.squaredNorm(), 0.0, 1.0);
+      nearest = std::min(nearest, (a + t * e - p).norm());
+    }
+    EXPECT_LT(1e3 * nearest, 0.5) << "upper margin vertex " << i;
+  }
+  const double radius = Proportions{}.eye_radius;
+  for (const char* region : {"leftUpperLid", "leftLowerLid", "leftSocket"})
+    for (const int v : head().skin_regions.at(region)) {
+      const Vector3d p = (head().skin.V.row(v) + expression("eyeBlinkLeft").displacement.row(v)).transpose();
+      EXPECT_GT((p - head().left_eye_centre).norm(), radius - 0.0002) << region << " vertex " << v;
+    }
+}
+
+TEST(Expressions, JawOpenPartsTheLipsAndMouthCloseClosesThemAgain) {
+  const auto gap = [](const Vector3d& above, const Vector3d& below) { return above.y() - below.y(); };
+  EXPECT_GT(gap(place("jawOpen", parting_above), place("jawOpen", parting_below)), 25);
+  const double closed = gap(place("jawOpen", parting_above) + shift("mouthClose", parting_above),
+                            place("jawOpen", parting_below) + shift("mouthClose", parting_below));
+  EXPECT_LT(closed, 2);
+  EXPECT_GT(closed, -0.5);
+  EXPECT_TRUE(expression("mouthClose").jaw.isZero());
+  EXPECT_GT(expression("jawOpen").jaw[0], 0.3);
+}
+
+TEST(Expressions, PuckerNarrowsTheMouthSmilesWidenIt) {
+  const double width =
+      (1e3 * (head().skin.V.row(vertex(left_corner)) - head().skin.V.row(vertex(right_corner)))).norm();
+  EXPECT_LT((place("mouthPucker", left_corner) - place("mouthPucker", right_corner)).norm(), 0.75 * width);
+  const Vector3d left = place("mouthSmileLeft", left_corner), right = place("mouthSmileRight", right_corner);
+  EXPECT_GT((left - right).norm(), 1.1 * width);
+}
+
+TEST(Expressions, FoldNoTriangleOver) {
+  const int neutral = folded_triangles(head().skin.V);
+  for (const std::string_view name : expression_names) {
+    if (name == "mouthClose") continue;  // made for use with jawOpen only
+    EXPECT_LE(folded_triangles(head().skin.V + expression(std::string(name)).displacement), neutral) << name;
+  }
+  const MatrixX3d closed = head().skin.V + expression("jawOpen").displacement + expression("mouthClose").displacement;
+  EXPECT_LE(folded_triangles(closed), neutral);
+}
+
+}  // namespace
+}  // namespace phiz
