@@ -175,8 +175,8 @@ Camera frame_view(View view, const MatrixX3d& points, const FacePoints& face, in
   const double unit = face.unit;
   switch (view) {
     case View::face: {
-      const Vector3d middle = (face.left_eye + face.right_eye) / 4 + face.chin / 2;
-      return look_at(middle, towards, 0.185 * unit, width, height);
+      const Vector3d middle = 0.31 * (face.left_eye + face.right_eye) + 0.38 * face.chin;
+      return look_at(middle, towards, 0.205 * unit, width, height);
     }
     case View::mouth:
       return look_at(face.mouth, towards, 0.075 * unit, width, height);

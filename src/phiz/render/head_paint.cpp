@@ -15,8 +15,7 @@ namespace {
 struct Tint {
   std::string_view region;
   Vector3d colour;
-  double blur;        // metres
-  double centre = 1;  // power of the weight: above 1 keeps to the middle of the region
+  double blur;  // metres
 };
 
 const std::vector<Tint>& tints() {
@@ -32,7 +31,6 @@ const std::vector<Tint>& tints() {
       {"oralRoof", {0.55, 0.28, 0.30}, 0.001},      {"oralFloor", {0.55, 0.28, 0.30}, 0.001},
       {"leftSocket", {0.92, 0.60, 0.58}, 0.0006},   {"rightSocket", {0.92, 0.60, 0.58}, 0.0006},
       {"leftNostril", {0.75, 0.55, 0.52}, 0.002},   {"rightNostril", {0.75, 0.55, 0.52}, 0.002},
-      {"leftBrow", {0.30, 0.25, 0.24}, 0.0055, 4},  {"rightBrow", {0.30, 0.25, 0.24}, 0.0055, 4},
       {"neckCap", {0.9, 0.6, 0.55}, 0.001},         {"forehead", {1.0, 0.98, 0.97}, 0.012},
       {"neck", {0.98, 0.96, 0.95}, 0.012},
   };
@@ -53,6 +51,13 @@ double ring_noise(double angle, int cells, int row) {
   const int i = static_cast<int>(std::floor(t));
   const double f = t - i, s = f * f * (3 - 2 * f);
   return (1 - s) * hashed(i % cells, row) + s * hashed((i + 1) % cells, row);
+}
+
+/// Smooth noise on a line: a random value at every integer, another set per `row`.
+double line_noise(double t, int row) {
+  const double floor = std::floor(t), f = t - floor, s = f * f * (3 - 2 * f);
+  const int i = static_cast<int>(floor);
+  return (1 - s) * hashed(i, row) + s * hashed(i + 1, row);
 }
 
 double smooth_step(double low, double high, double x) {
@@ -106,12 +111,61 @@ MatrixX3d paint_skin(const TriangleMesh& skin, const std::map<std::string, Vecto
         if (valence[v] > 0) weight[v] = 0.5 * weight[v] + 0.5 * sum[v] / valence[v];
     }
     for (Eigen::Index v = 0; v < n; ++v) {
-      const Eigen::RowVector3d factor = Eigen::RowVector3d::Ones() + std::pow(weight[v], tint.centre) *
-                                                                         (tint.colour.transpose().array() - 1).matrix();
+      const Eigen::RowVector3d factor =
+          Eigen::RowVector3d::Ones() + weight[v] * (tint.colour.transpose().array() - 1).matrix();
       colour.row(v) = colour.row(v).cwiseProduct(factor);
     }
   }
   return colour;
+}
+
+std::function<Vector3d(const Vector3d&)> brow_pattern(const HeadTemplate& head) {
+  struct Brow {
+    std::vector<Vector3d> line;  // from the nose outwards
+    double length = 0;
+  };
+  std::vector<Brow> brows(2);
+  for (int side = 0; side < 2; ++side) {
+    Brow& brow = brows[side];
+    for (int k = 0; k < 5; ++k) {
+      const std::string name = std::to_string(side == 0 ? 21 - k : 22 + k);
+      for (const Landmark& l : head.landmarks)
+        if (l.name == name && l.skin_vertex >= 0 && l.skin_vertex < head.skin.V.rows())
+          brow.line.emplace_back(head.skin.V.row(l.skin_vertex));
+    }
+    if (brow.line.size() != 5) return {};
+    for (int k = 0; k < 4; ++k) brow.length += (brow.line[k + 1] - brow.line[k]).norm();
+    if (!(brow.length > 0)) return {};
+  }
+  return [brows](const Vector3d& p) -> Vector3d {
+    double density = 0;
+    for (const Brow& brow : brows) {
+      const double reach = 0.35 * brow.length;
+      if ((p - brow.line[2]).squaredNorm() > (reach + 0.5 * brow.length) * (reach + 0.5 * brow.length)) continue;
+      double nearest = 1e9, along = 0, across = 0, before = 0;
+      for (int k = 0; k < 4; ++k) {
+        const Vector3d ab = brow.line[k + 1] - brow.line[k];
+        const double l = ab.norm(), t = std::clamp((p - brow.line[k]).dot(ab) / (l * l), 0.0, 1.0);
+        const Vector3d off = p - brow.line[k] - t * ab;
+        if (off.norm() < nearest) {
+          nearest = off.norm();
+          along = (before + t * l) / brow.length;
+          across = off.y() >= 0 ? nearest : -nearest;
+        }
+        before += l;
+      }
+      // Widest near the nose, a thin tail; hairs lean outwards, those at the inner end stand up.
+      const double half = brow.length * (0.115 - 0.075 * along) * smooth_step(-0.05, 0.12, along + 0.05);
+      const double edge = std::clamp(nearest / std::max(half, 1e-6), 0.0, 2.0);
+      const double lean = 0.25 + 1.9 * smooth_step(0.0, 0.45, along);
+      const double stroke = along * brow.length + across * -lean;
+      const int row = static_cast<int>(std::floor(across / brow.length * 24 + 100));
+      const double hair = 0.65 * line_noise(stroke * 2600, row) + 0.35 * line_noise(stroke * 1100, 3);
+      density = std::max(density, (1 - smooth_step(0.45, 1.25, edge + 0.55 * (hair - 0.5))) * (0.45 + 0.75 * hair));
+    }
+    density = std::clamp(density, 0.0, 0.9);
+    return Vector3d::Ones() + density * (Vector3d(0.14, 0.11, 0.10) - Vector3d::Ones());
+  };
 }
 
 std::function<Vector3d(const Vector3d&)> eye_pattern(const Vector3d& centre, double radius) {

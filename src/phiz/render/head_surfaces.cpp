@@ -142,7 +142,10 @@ Surface skin_surface(const PosedHead& posed, const HeadViewOptions& options) {
     case HeadStyle::anatomy:
     case HeadStyle::cutaway:
       s.material = skin_material();
-      if (posed.head != nullptr) s.colour = paint_skin(*posed.skin, posed.head->skin_regions);
+      if (posed.head != nullptr) {
+        s.colour = paint_skin(*posed.skin, posed.head->skin_regions);
+        s.colour_at = brow_pattern(*posed.head);
+      }
       break;
     case HeadStyle::heat:
       paint_heat(s, options.values, options.scale);
@@ -156,6 +159,7 @@ Surface skin_surface(const PosedHead& posed, const HeadViewOptions& options) {
       s.material = clay_material();
   }
   if (options.style == HeadStyle::anatomy) {
+    s.colour_at = nullptr;
     s.material.opacity = 0.16;
     s.material.grain = 0;
   }

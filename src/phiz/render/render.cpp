@@ -27,6 +27,8 @@ struct PixelRecord {
   Visibility seen;
 };
 
+constexpr int most_layers = 8;  // surfaces along a ray, all but the last translucent
+
 struct Frame {
   const Camera& camera;
   const RenderOptions& options;
@@ -34,7 +36,9 @@ struct Frame {
   const RayScene& rays;
   Lens lens;
   ShadingContext context;
-  std::vector<PixelRecord> records;
+  bool translucent = false;          // is there any surface to see through?
+  std::vector<PixelRecord> records;  // of the first opaque surface
+  std::vector<PixelRecord> veils;    // of the first surface, where that is translucent
   float depth_low = 0, depth_high = 1;
 };
 
@@ -58,15 +62,34 @@ void for_pixels(const Camera& camera, const Body& body) {
   });
 }
 
+bool is_translucent(const ShadedPoint& point) {
+  return point.surface->material.opacity < 1;
+}
+
+/// Where the next ray through the same pixel starts, behind a hit.
+float behind(const Frame& frame, const Hit& hit) {
+  return hit.distance + 1e-5F * frame.rays.size();
+}
+
 void record_visibility(Frame& frame) {
-  frame.records.resize(static_cast<std::size_t>(frame.camera.width) * frame.camera.height);
+  const std::size_t count = static_cast<std::size_t>(frame.camera.width) * frame.camera.height;
+  frame.records.resize(count);
+  if (frame.translucent) frame.veils.resize(count);
   for_pixels(frame.camera, [&](int x, int y) {
     const Vector3f d = frame.lens.direction(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
-    const Hit hit = frame.rays.first_hit(frame.lens.eye, d, frame.lens.near / -d.dot(frame.lens.back));
-    if (!hit) return;
-    const ShadedPoint point = frame.rays.point(hit, d);
-    PixelRecord& record = frame.records[static_cast<std::size_t>(y) * frame.camera.width + x];
-    record = {point.surface, point.position, point.normal, trace_visibility(frame.context, point, pixel_pattern(x, y))};
+    const std::size_t pixel = static_cast<std::size_t>(y) * frame.camera.width + x;
+    float near = frame.lens.near / -d.dot(frame.lens.back);
+    for (int layer = 0; layer < most_layers; ++layer) {
+      const Hit hit = frame.rays.first_hit(frame.lens.eye, d, near);
+      if (!hit) return;
+      const ShadedPoint point = frame.rays.point(hit, d);
+      const bool veil = is_translucent(point);
+      if (layer == 0 || !veil)
+        (veil ? frame.veils : frame.records)[pixel] = {point.surface, point.position, point.normal,
+                                                       trace_visibility(frame.context, point, pixel_pattern(x, y))};
+      if (!veil) return;
+      near = behind(frame, hit);
+    }
   });
 }
 
@@ -74,13 +97,14 @@ void record_visibility(Frame& frame) {
 /// surface, or traced where there are too few.
 Visibility gather_visibility(const Frame& frame, const ShadedPoint& point, float x, float y, float footprint) {
   const int x0 = static_cast<int>(std::floor(x - 0.5F)) - 1, y0 = static_cast<int>(std::floor(y - 0.5F)) - 1;
+  const std::vector<PixelRecord>& records = is_translucent(point) ? frame.veils : frame.records;
   Visibility sum;
   sum.ambient = 0;
   float total = 0;
   const float thickness = 2.5F * footprint;
   for (int j = std::max(y0, 0); j < std::min(y0 + 4, frame.camera.height); ++j) {
     for (int i = std::max(x0, 0); i < std::min(x0 + 4, frame.camera.width); ++i) {
-      const PixelRecord& r = frame.records[static_cast<std::size_t>(j) * frame.camera.width + i];
+      const PixelRecord& r = records[static_cast<std::size_t>(j) * frame.camera.width + i];
       if (r.surface != point.surface) continue;
       const float off = std::abs(point.normal.dot(r.position - point.position));
       const float alike = point.normal.dot(r.normal);
@@ -98,8 +122,8 @@ Visibility gather_visibility(const Frame& frame, const ShadedPoint& point, float
   return sum;
 }
 
-/// Display-linear colour of one surface point.
-Vector3f shade(const Frame& frame, const ShadedPoint& point, const Vector3f& direction, float x, float y) {
+/// Display-linear colour of one surface point; `open`: take it to see all light.
+Vector3f shade(const Frame& frame, const ShadedPoint& point, const Vector3f& direction, float x, float y, bool open) {
   const float depth = frame.lens.depth(point.position);
   if (frame.options.shading == Shading::normals) {
     const Vector3f& n = point.normal;
@@ -109,7 +133,9 @@ Vector3f shade(const Frame& frame, const ShadedPoint& point, const Vector3f& dir
   if (frame.options.shading == Shading::depth)
     return Vector3f::Constant((frame.depth_high - depth) / (frame.depth_high - frame.depth_low));
   const float footprint = depth / frame.lens.focal;
-  const Visibility seen = gather_visibility(frame, point, x, y, footprint);
+  Visibility seen;
+  seen.light.fill(1);
+  if (!open) seen = gather_visibility(frame, point, x, y, footprint);
   Vector3f colour = tone_curve(radiance(frame.context, point, direction, seen, footprint));
   if (point.surface->wireframe.shown) {
     const float cover = wire_coverage(frame.lens, point, x, y);
@@ -121,7 +147,6 @@ Vector3f shade(const Frame& frame, const ShadedPoint& point, const Vector3f& dir
 /// Display-linear colour along the ray through pixel position (x, y): translucent surfaces in front, then an opaque one
 /// or the backdrop.
 Vector3f trace(const Frame& frame, float x, float y) {
-  constexpr int most_layers = 8;
   const Vector3f d = frame.lens.direction(x, y);
   float near = frame.lens.near / -d.dot(frame.lens.back);
   Vector3f colour = Vector3f::Zero();
@@ -133,10 +158,10 @@ Vector3f trace(const Frame& frame, float x, float y) {
     const float opacity = static_cast<float>(point.surface->material.opacity);
     const float facing = std::abs(point.normal.dot(d));
     const float cover = layer + 1 == most_layers ? 1.F : opacity + (1 - opacity) * std::pow(1 - facing, 3.F);
-    colour += through * cover * shade(frame, point, d, x, y);
+    colour += through * cover * shade(frame, point, d, x, y, layer > 0 && is_translucent(point));
     through *= 1 - cover;
     if (through < 1e-3F) return colour;
-    near = hit.distance + 1e-5F * frame.rays.size();
+    near = behind(frame, hit);
   }
   return colour + through * backdrop(frame, y);
 }
@@ -216,7 +241,11 @@ Image render(const Scene& scene, const Camera& camera, const RenderOptions& opti
   validate(scene);
   check(options, scene);
   const RayScene rays(scene, options.fast_build);
-  Frame frame{camera, options, scene.surroundings, rays, Lens(camera), make_context(scene, camera, options, rays), {}};
+  Frame frame{camera, options,      scene.surroundings,
+              rays,   Lens(camera), make_context(scene, camera, options, rays),
+              false,  {},           {}};
+  frame.translucent = std::any_of(rays.surfaces().begin(), rays.surfaces().end(),
+                                  [](const TracedSurface& s) { return s.material.opacity < 1; });
   if (options.shading == Shading::depth) {
     const MatrixX3d points = world_points(scene);
     const VectorXd depths = (camera.eye.transpose().replicate(points.rows(), 1) - points) * camera_axes(camera).col(2);
