@@ -18,7 +18,7 @@ struct Place {
 // Rows from the neck upwards, in each from the midline outwards. Midline points are those of Proportions.
 constexpr Place places[] = {
     // Under the chin.
-    {0, 3, 0, -97, 26},
+    {0, 3, 0, -97, 27},
     {3, 3, 17, -97, 23},
     {6, 3, 33, -95, 9},
     {8, 3, 40, -92, -3},
@@ -92,7 +92,7 @@ constexpr Place places[] = {
     {10, 9, 56.8, -32, 34},
     {11, 9, 59.8, -27, 15.5},
     {14, 9, 63, -27, -36},
-    {16, 9, 0, -1, -99.5},
+    {16, 9, 0, -1, -98.5},
     {6, 10, 30.2, -25, 73.3},
     {7, 10, 37, -25.5, 68.8},
     {8, 10, 43.8, -26, 62.8},
@@ -100,7 +100,7 @@ constexpr Place places[] = {
     {10, 10, 55.7, -24.3, 38.5},
     {11, 10, 60.5, -20.5, 18},
     {14, 10, 64, -20, -33},
-    {16, 10, 0, 8, -103},
+    {16, 10, 0, 8, -101.5},
     // Under the nose, out over the cheek.
     {0, 11, 0, -13, 84},
     {1, 11, 4.2, -13.7, 83.3},
@@ -115,41 +115,41 @@ constexpr Place places[] = {
     {10, 11, 55, -17, 43},
     {11, 11, 61.5, -15, 20.5},
     {15, 11, 49, 3, -82},
-    {16, 11, 0, 17, -106.5},
+    {16, 11, 0, 17, -104.3},
     {0, 12, 0, -12.3, 88.3},
     {1, 12, 4, -12.8, 85},
     {2, 12, 7.8, -13.1, 81.8},
     {3, 12, 11.8, -12.4, 80.3},
     {4, 12, 14.8, -11.6, 79},
     {5, 12, 17.4, -11.2, 75.8},
-    {6, 12, 19.6, -11.5, 71.2},
-    {7, 12, 28, -12.2, 71.2},
+    {6, 12, 19.3, -11.5, 70.2},
+    {7, 12, 25, -12, 71.2},
     {8, 12, 37, -13.8, 67},
     {9, 12, 46.4, -14.3, 59},
     {10, 12, 55, -12.3, 45},
     {11, 12, 62.5, -10.5, 22.5},
-    {16, 12, 0, 28, -109.5},
+    {16, 12, 0, 28, -107},
     {0, 13, 0, -10.8, 92.8},
     {1, 13, 2.9, -11.4, 89.3},
     {3, 13, 12.9, -10, 85},
-    {4, 13, 16.4, -8.8, 82.3},
-    {5, 13, 18.5, -7, 77.3},
-    {6, 13, 19.8, -7.5, 70.2},
-    {7, 13, 27.6, -9, 71},
+    {4, 13, 16.8, -8.8, 82.4},
+    {5, 13, 18.9, -7.2, 77.4},
+    {6, 13, 19.4, -7.5, 69},
+    {7, 13, 24.5, -8.5, 70.6},
     {8, 13, 36.4, -10.2, 67.5},
     {9, 13, 45.8, -10.4, 60.2},
     {10, 13, 55, -8, 47},
     {11, 13, 63.4, -6.5, 24},
     {15, 13, 55.5, 25, -82},
-    {16, 13, 0, 40, -111.5},
+    {16, 13, 0, 40, -109.3},
     {0, 14, 0, -8, 97},
     {1, 14, 3.4, -9.4, 94},
     {2, 14, 6.6, -8.4, 92.4},
     {3, 14, 11, -7.6, 89.8},
-    {4, 14, 15.2, -5, 85.4},
-    {5, 14, 18.1, -3, 78.6},
-    {6, 14, 19.8, -3.2, 70},
-    {7, 14, 27.2, -5.5, 70.6},
+    {4, 14, 15.7, -4.8, 85.7},
+    {5, 14, 18.8, -3.4, 78.9},
+    {6, 14, 19.4, -3.2, 68.8},
+    {7, 14, 24.3, -5, 70.6},
     {8, 14, 35.8, -6.5, 68},
     {9, 14, 45.2, -6.3, 61.5},
     {10, 14, 54.8, -3.5, 49},
@@ -158,10 +158,10 @@ constexpr Place places[] = {
     {1, 15, 4.2, -0.3, 98},
     {2, 15, 8, -0.3, 95},
     {3, 15, 11, 0, 89.5},
-    {4, 15, 14.4, 0.6, 84.2},
-    {5, 15, 17, 1.2, 78},
-    {6, 15, 19.4, 1.2, 70},
-    {7, 15, 26.8, -1.5, 70.2},
+    {4, 15, 13.6, 1.4, 83.6},
+    {5, 15, 16.2, 2, 77.2},
+    {6, 15, 19, 1.2, 69},
+    {7, 15, 24, -0.5, 70.2},
     {8, 15, 35, -2.5, 68.5},
     {9, 15, 44.3, -2, 62.9},
     {10, 15, 54.2, 1.5, 51},
@@ -222,7 +222,7 @@ constexpr Place places[] = {
     {10, 20, 57.5, 27.5, 40.5},
     {11, 20, 67.3, 31, 11},
     {15, 20, 56.5, 37, -82},
-    {16, 20, 0, 52, -112},
+    {16, 20, 0, 52, -111.8},
     {0, 21, 0, 36, 71.2},
     {1, 21, 3.8, 36, 70.8},
     {2, 21, 6.4, 36, 69.6},
@@ -234,7 +234,7 @@ constexpr Place places[] = {
     {11, 21, 69.5, 39, 8},
     {12, 21, 74, 36, -33},
     {14, 21, 70.5, 25, -46},
-    {16, 21, 0, 63, -110.8},
+    {16, 21, 0, 63, -111.2},
     // Brow.
     {0, 22, 0, 42.5, 72.4},
     {1, 22, 4, 42.6, 72.3},
@@ -249,13 +249,13 @@ constexpr Place places[] = {
     {10, 22, 54.5, 42, 49},
     {11, 22, 71.3, 47.5, 6},
     {12, 22, 75, 50, -31},
-    {16, 22, 0, 75, -109.3},
+    {16, 22, 0, 75, -110},
     {13, 21, 73.8, 33, -41.5},
     {13, 22, 75, 48, -44},
-    {14, 22, 70, 40, -56},
+    {14, 22, 69, 40, -56},
     {15, 12, 53, 14, -82},
-    {15, 21, 57, 50, -82},
-    {15, 22, 57, 63, -82},
+    {15, 21, 58.5, 50, -82},
+    {15, 22, 59, 63, -82},
     {15, 10, 47, -6, -82},
     {15, 8, 46, -20, -80},
     {15, 6, 42, -38, -74},
@@ -314,23 +314,26 @@ constexpr Place places[] = {
     {16, 26, 0, 123, -71},
 };
 
-/// The neck is an upright oval column: its section at a row, angle per column.
+/// The neck is an upright oval column: its sections at the lowest rows, millimetres.
 struct NeckSection {
   int j;
   double y, half_width, half_depth, centre_z;
+  double muscle_angle;  // of the ridge of the sternocleidomastoid, degrees from the front
+  double larynx;        // how far the larynx stands out
 };
 constexpr NeckSection neck_sections[] = {
-    {0, -170, 52, 47, -45}, {1, -146, 49, 46.5, -41}, {2, -121, 47.5, 47.5, -37.5}};
+    {0, -170, 52, 47, -45, 26, 0.5}, {1, -146, 49, 46.5, -41, 42, 1.5}, {2, -121, 47.5, 47.5, -37.5, 62, 3.2}};
 constexpr double neck_angles[SkinTopology::columns + 1] = {0,  9,  18,  27,  36,  46,  56,  66, 76,
                                                            86, 96, 106, 117, 129, 142, 161, 180};
 
 /// The vault of the skull: a superellipsoid, deeper behind than in front.
 struct Vault {
   Vector3d centre{0, 66, -22};
-  double half_width = 76, height = 74, front = 95.5, back = 88.5, exponent = 2.25;
+  double half_width = 76, height = 74, depth = 105, front = 95.5, back = 88.5, exponent = 2.25;
 
   double level(const Vector3d& d) const {
-    return std::pow(std::abs(d.x()) / half_width, exponent) + std::pow(std::abs(d.y()) / height, exponent) +
+    return std::pow(std::abs(d.x()) / half_width, exponent) +
+           std::pow(std::abs(d.y()) / (d.y() > 0 ? height : depth), exponent) +
            std::pow(std::abs(d.z()) / (d.z() > 0 ? front : back), exponent);
   }
   /// The point of the vault in the direction of p from the centre.
@@ -359,18 +362,21 @@ Vector3d coons(const SkinForm& form, const std::function<int(int, int)>& vertex,
 void place_vault(SkinForm& form) {
   const SkinTopology& topology = skin_topology();
   const Vault vault;
-  for (int j = 23; j <= SkinTopology::rows; ++j)
-    for (int i = j == 23 ? 12 : 0; i <= SkinTopology::columns; ++i) {
+  for (int j = 11; j <= SkinTopology::rows; ++j)
+    for (int i = j < 20 ? 15 : j < 23 ? 14 : j == 23 ? 12 : 0; i <= SkinTopology::columns; ++i) {
       const int v = topology.sheet(i, j);
-      if (v < 0 || !form.placed(v)) continue;
+      if (v < 0 || !form.placed(v) || (i == 14 && j == 20)) continue;
       const double share = j == 24 && i < 12 ? 0.5 : 1.0;  // the forehead keeps some of its own form
-      form.place(v, form.at(v) + share * (vault.under(form.at(v)) - form.at(v)), 0.5);
+      form.place(v, form.at(v) + share * (vault.under(form.at(v)) - form.at(v)),
+                 j < 23 && i < 16          ? 0.15
+                 : j == SkinTopology::rows ? 0.08
+                                           : 0.5);
     }
   for (int u = 0; u < 4; ++u)
     for (int v = 1; v < 8; ++v) {
       const Vector3d p = coons(
           form, [&](int a, int b) { return topology.crown(a, b); }, u, 4, v, 8);
-      form.place(topology.crown(u, v), {p.x(), vault.top(p.x(), p.z()), p.z()}, 0.5);
+      form.place(topology.crown(u, v), {p.x(), vault.top(p.x(), p.z()), p.z()}, 0.08);
     }
 }
 
@@ -423,8 +429,12 @@ void place_sheet(SkinForm& form) {
   for (const NeckSection& section : neck_sections)
     for (int i = 0; i <= SkinTopology::columns; ++i) {
       const double angle = neck_angles[i] * std::numbers::pi / 180;
-      form.place(topology.sheet(i, section.j), {section.half_width * std::sin(angle), section.y,
-                                                section.centre_z + section.half_depth * std::cos(angle)});
+      const auto ridge = [&](double at, double width) { return std::exp(-std::pow((neck_angles[i] - at) / width, 2)); };
+      const double muscle = 2.2 * ridge(section.muscle_angle, 11) - 1.6 * ridge(section.muscle_angle - 24, 12);
+      const double larynx = section.larynx * ridge(0, 12);
+      const double swell = 1 + (muscle + larynx) / section.half_depth;
+      form.place(topology.sheet(i, section.j), {swell * section.half_width * std::sin(angle), section.y,
+                                                section.centre_z + swell * section.half_depth * std::cos(angle)});
     }
   for (const Place& p : places) form.place(topology.sheet(p.i, p.j), {p.x, p.y, p.z}, firmness(p.i, p.j));
   fill_rows(form);
