@@ -15,6 +15,9 @@ namespace {
 /// Rows whose gap would stay above this after the unconstrained step are left out of the multiplier problem, metres.
 constexpr double idle_gap = 2e-4;
 
+/// See run().
+constexpr double plain_shortfall = 10;
+
 double longest_move(const double* p, std::ptrdiff_t rows) {
   double longest2 = 0;
   for (std::ptrdiff_t r = 0; r < rows; ++r)
@@ -177,6 +180,7 @@ SolveStatistics Descent::run(double* x) {
   while (statistics.iterations < options_.max_iterations) {
     ++statistics.iterations;
     find_step(contact, g.get(), v.get(), p.get());
+    const bool plain = options_.history > 0 && inverse_.pairs() == 0;
     const double contact_work = lambda_.dot(row_motion_);
     const double decrease = contact_work - dot(g.get(), p.get(), size);
     double alpha = 1;
@@ -224,7 +228,9 @@ SolveStatistics Descent::run(double* x) {
     statistics.contacts = static_cast<int>((lambda_.array() > 0).count());
     contact = detect(x);
     statistics.penetration = deepest(contact);
-    const bool small_step = statistics.last_step <= options_.step_tolerance;
+    // A plain step is short of the way to go by up to the ratio of the softest to the stiffest response.
+    const double shortfall = plain ? plain_shortfall : 1.0;
+    const bool small_step = shortfall * statistics.last_step <= options_.step_tolerance;
     if (small_step || statistics.iterations == options_.max_iterations) statistics.residual /= system_.force_scale();
     statistics.converged = small_step && statistics.residual <= options_.residual_tolerance &&
                            statistics.penetration <= options_.penetration_tolerance;

@@ -80,10 +80,15 @@ double EvaluateElements(const ElementBlocks& e, const TermWeights& w, const doub
         }
       }
       if (w.volume != 0) {
-        ClosestUnimodular3(d, F, T);
+        // The closest matrix of determinant j^3 is j times the closest unimodular matrix to F / j.
+        const Lane goal = hn::Load(d, e.goal.get() + b * 8 + l);
+        const Lane inverse_goal = hn::Div(hn::Set(d, 1.0), goal);
+        Lane G[9];
+        for (int k = 0; k < 9; ++k) G[k] = hn::Mul(inverse_goal, F[k]);
+        ClosestUnimodular3(d, G, T);
         const Lane volume = hn::Set(d, w.volume);
         for (int k = 0; k < 9; ++k) {
-          const Lane delta = hn::Sub(F[k], T[k]);
+          const Lane delta = hn::NegMulAdd(goal, T[k], F[k]);
           const Lane force = hn::Mul(volume, delta);
           P[k] = hn::Add(P[k], force);
           sum = hn::MulAdd(force, delta, sum);
@@ -149,6 +154,8 @@ ElementBlocks::ElementBlocks(const MatrixX3d& rest, const MatrixX4i& tet_rows, c
   target_share = hwy::AllocateAligned<double>(count);
   target = hwy::AllocateAligned<double>(count * 9);
   stretch = hwy::AllocateAligned<double>(count * 6);
+  goal = hwy::AllocateAligned<double>(count);
+  std::fill_n(goal.get(), count, 1.0);
   vertex = hwy::AllocateAligned<std::int32_t>(count * 4);
   for (std::ptrdiff_t slot = 0; slot < blocks * width; ++slot) {
     const std::ptrdiff_t t = std::min(slot, tets - 1);

@@ -35,6 +35,7 @@ struct ElementBlocks {
   hwy::AlignedFreeUniquePtr<double[]> target_share;  ///< factor of the target term, 1
   hwy::AlignedFreeUniquePtr<double[]> target;        ///< target deformation gradient, 9
   hwy::AlignedFreeUniquePtr<double[]> stretch;       ///< symmetric stretch of the shape term: xx, yy, zz, xy, xz, yz
+  hwy::AlignedFreeUniquePtr<double[]> goal;          ///< cube root of the determinant that the volume term asks for, 1
   hwy::AlignedFreeUniquePtr<std::int32_t[]> vertex;  ///< vertex of each corner, 4
 };
 

@@ -2,6 +2,7 @@
 #include "phiz/face/blend.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -59,7 +60,7 @@ struct TargetBlender::Table {
   std::ptrdiff_t blocks = 0;
   std::vector<std::ptrdiff_t> start;          ///< first entry of each block
   std::vector<int> shape;                     ///< per entry
-  hwy::AlignedFreeUniquePtr<float[]> values;  ///< 72 per entry
+  hwy::AlignedFreeUniquePtr<float[]> values;  ///< 80 per entry
 };
 
 TargetBlender::~TargetBlender() = default;
@@ -93,8 +94,8 @@ TargetBlender::TargetBlender(const FaceModel& model, const VectorXi& soft, const
   for (std::size_t b = 0; b < static_cast<std::size_t>(table.blocks); ++b) table.start[b + 1] += table.start[b];
   const std::ptrdiff_t entries = table.start.back();
   table.shape.resize(static_cast<std::size_t>(entries));
-  table.values = hwy::AllocateAligned<float>(static_cast<std::size_t>(std::max<std::ptrdiff_t>(entries, 1)) * 72);
-  std::fill_n(table.values.get(), entries * 72, 0.0F);
+  table.values = hwy::AllocateAligned<float>(static_cast<std::size_t>(std::max<std::ptrdiff_t>(entries, 1)) * 80);
+  std::fill_n(table.values.get(), entries * 80, 0.0F);
   std::vector<std::ptrdiff_t> next(table.start.begin(), table.start.end() - 1);
   for (std::size_t m = 0; m < model.shapes.size(); ++m) {
     const VolumetricShape& shape = model.shapes[m];
@@ -103,9 +104,11 @@ TargetBlender::TargetBlender(const FaceModel& model, const VectorXi& soft, const
       if (s < 0) continue;
       const std::ptrdiff_t entry = next[static_cast<std::size_t>(s / 8)];
       table.shape[static_cast<std::size_t>(entry)] = static_cast<int>(m);
-      float* values = table.values.get() + entry * 72 + s % 8;
+      float* values = table.values.get() + entry * 80 + s % 8;
       for (int k = 0; k < 3; ++k) values[k * 8] = shape.log_rotation(i, k);
       for (int k = 0; k < 6; ++k) values[(3 + k) * 8] = shape.stretch(i, k);
+      const double det = (Matrix3d::Identity() + symmetric(shape.stretch.row(i).cast<double>())).determinant();
+      values[72] = static_cast<float>(std::log(std::max(det, 0.1)) / 3);
     }
     for (std::size_t b = 0; b < touched[m].size(); ++b) next[b] += touched[m][b];
   }
@@ -122,9 +125,9 @@ void TargetBlender::blend(const VectorXd& weights, ElementBlocks& elements) cons
       table.blocks,
       [&](std::ptrdiff_t b) {
         const std::ptrdiff_t first = table.start[static_cast<std::size_t>(b)];
-        blend_block(table.values.get() + first * 72, table.shape.data() + first,
+        blend_block(table.values.get() + first * 80, table.shape.data() + first,
                     table.start[static_cast<std::size_t>(b) + 1] - first, w.data(), elements.target.get() + b * 72,
-                    elements.stretch.get() + b * 48);
+                    elements.stretch.get() + b * 48, elements.goal.get() + b * 8);
       },
       64);
 }

@@ -34,7 +34,9 @@ class TargetBlender {
   TargetBlender(TargetBlender&&) noexcept;
   TargetBlender& operator=(TargetBlender&&) noexcept;
 
-  /// Writes target gradients and stretches of all tets for weights per shape. Weights below 1e-5 count as none.
+  /// Writes the targets of all tets for weights per shape: gradient, stretch, and the volume goal exp(sum w_m log det
+  /// M_m), which is 1 where the shapes keep volume and the volume of the sculpted shape where they do not. Weights
+  /// below 1e-5 count as none.
   void blend(const VectorXd& weights, ElementBlocks& elements) const;
 
  private:

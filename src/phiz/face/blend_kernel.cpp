@@ -15,27 +15,27 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 void BlendBlock(const float* entries, const int* shape, std::ptrdiff_t count, const float* weights, double* target,
-                double* stretch) {
-  HWY_ALIGN float sum[72];
+                double* stretch, double* goal) {
+  HWY_ALIGN float sum[80];
   {
     const hn::CappedTag<float, 8> f;
     for (std::size_t l = 0; l < 8; l += hn::Lanes(f)) {
-      hn::Vec<decltype(f)> s[9];
+      hn::Vec<decltype(f)> s[10];
       for (auto& part : s) part = hn::Zero(f);
       for (std::ptrdiff_t e = 0; e < count; ++e) {
         const auto w = hn::Set(f, weights[shape[e]]);
-        const float* entry = entries + e * 72 + l;
-        for (int k = 0; k < 9; ++k) s[k] = hn::MulAdd(w, hn::Load(f, entry + k * 8), s[k]);
+        const float* entry = entries + e * 80 + l;
+        for (int k = 0; k < 10; ++k) s[k] = hn::MulAdd(w, hn::Load(f, entry + k * 8), s[k]);
       }
-      for (int k = 0; k < 9; ++k) hn::Store(s[k], f, sum + k * 8 + l);
+      for (int k = 0; k < 10; ++k) hn::Store(s[k], f, sum + k * 8 + l);
     }
   }
   const hn::CappedTag<double, 8> d;
   const hn::Rebind<float, decltype(d)> half;
   const auto one = hn::Set(d, 1.0);
   for (std::size_t l = 0; l < 8; l += hn::Lanes(d)) {
-    hn::Vec<decltype(d)> v[9];
-    for (int k = 0; k < 9; ++k) v[k] = hn::PromoteTo(d, hn::Load(half, sum + k * 8 + l));
+    hn::Vec<decltype(d)> v[10];
+    for (int k = 0; k < 10; ++k) v[k] = hn::PromoteTo(d, hn::Load(half, sum + k * 8 + l));
     // Quaternion of an eighth of the turn by series, normalised, then squared twice.
     const auto eighth = hn::Set(d, 0.125);
     const auto qx = hn::Mul(eighth, v[0]), qy = hn::Mul(eighth, v[1]), qz = hn::Mul(eighth, v[2]);
@@ -82,6 +82,12 @@ void BlendBlock(const float* entries, const int* shape, std::ptrdiff_t count, co
         hn::Store(hn::MulAdd(R[6 + i], S[at[2][j]], hn::MulAdd(R[3 + i], S[at[1][j]], hn::Mul(R[i], S[at[0][j]]))), d,
                   target + (3 * j + i) * 8 + l);
     for (int k = 0; k < 6; ++k) hn::Store(S[k], d, stretch + k * 8 + l);
+    // exp within the bounds that a goal may have.
+    const auto bound = hn::Set(d, 0.25);
+    const auto g = hn::Max(hn::Neg(bound), hn::Min(bound, v[9]));
+    auto power = one;
+    for (int k = 8; k >= 1; --k) power = hn::MulAdd(hn::Mul(power, g), hn::Set(d, 1.0 / k), one);
+    hn::Store(power, d, goal + l);
   }
 }
 
@@ -95,8 +101,8 @@ namespace phiz {
 HWY_EXPORT(BlendBlock);
 
 void blend_block(const float* entries, const int* shape, std::ptrdiff_t count, const float* weights, double* target,
-                 double* stretch) {
-  HWY_DYNAMIC_DISPATCH(BlendBlock)(entries, shape, count, weights, target, stretch);
+                 double* stretch, double* goal) {
+  HWY_DYNAMIC_DISPATCH(BlendBlock)(entries, shape, count, weights, target, stretch, goal);
 }
 
 }  // namespace phiz

@@ -10,6 +10,6 @@ namespace phiz {
 /// zz, xy, xz, yz of S - I); `shape`: its number; `weights`: per shape. Writes 9 x 8 doubles of R S (column-major) and
 /// 6 x 8 of S.
 void blend_block(const float* entries, const int* shape, std::ptrdiff_t count, const float* weights, double* target,
-                 double* stretch);
+                 double* stretch, double* goal);
 
 }  // namespace phiz

@@ -13,6 +13,7 @@
 #include "phiz/face/flesh.h"
 #include "phiz/face/surface_gradients.h"
 #include "phiz/geometry/operators.h"
+#include "phiz/geometry/topology.h"
 #include "phiz/numerics/svd3.h"
 
 namespace phiz {
@@ -42,6 +43,43 @@ VectorXi tets_below(const HeadTemplate& head, const VectorXi& soft) {
   return out;
 }
 
+/// A sculpted skin may fold over itself and invert tets below, mostly tiny ones at the corners of lids and lips. A
+/// target must not ask for that: gradients outside of the bounds are replaced by the mean of their sound neighbours,
+/// layer by layer, and what is left is brought within the bounds.
+void repair_gradients(std::vector<Matrix3d>& F, const VectorXd& volume, const MatrixX4i& neighbours) {
+  constexpr double least = 0.4, most = 2.2;
+  constexpr int layers = 4;
+  std::vector<char> sound(F.size());
+  for (std::size_t t = 0; t < F.size(); ++t) {
+    const Vector3d s = svd3(F[t]).s;
+    sound[t] = s[2] >= least && s[0] <= most;
+  }
+  for (int layer = 0; layer < layers; ++layer) {
+    std::vector<std::pair<std::size_t, Matrix3d>> mended;
+    for (std::size_t t = 0; t < F.size(); ++t) {
+      if (sound[t]) continue;
+      Matrix3d sum = Matrix3d::Zero();
+      double total = 0;
+      for (int k = 0; k < 4; ++k) {
+        const int n = neighbours(static_cast<Eigen::Index>(t), k);
+        if (n < 0 || !sound[static_cast<std::size_t>(n)]) continue;
+        sum += volume[n] * F[static_cast<std::size_t>(n)];
+        total += volume[n];
+      }
+      if (total > 0) mended.emplace_back(t, sum / total);
+    }
+    for (const auto& [t, mean] : mended) {
+      F[t] = mean;
+      sound[t] = 1;
+    }
+  }
+  for (Matrix3d& gradient : F) {
+    const Svd3 svd = svd3(gradient);
+    if (svd.s[2] < least || svd.s[0] > most)
+      gradient = svd.U * svd.s.cwiseMax(least).cwiseMin(most).asDiagonal() * svd.V.transpose();
+  }
+}
+
 /// Everything that the solves of all shapes share.
 class ShapeSolver {
  public:
@@ -50,6 +88,7 @@ class ShapeSolver {
         options_(options),
         soft_(soft_tets(head)),
         below_(tets_below(head, soft_)),
+        neighbours_(tet_neighbours(head.volume.T(soft_, Eigen::all))),
         rest_(tet_rest(head.volume.V, head.volume.T(soft_, Eigen::all))),
         transfer_(transfer_body()),
         hold_(hold_body()) {}
@@ -85,7 +124,8 @@ class ShapeSolver {
     for (std::size_t k = 0; k < held_.size(); ++k) hold_.set_attachment(k, sculpted.row(held_[k]));
     solve.step_tolerance = options_.step_tolerance;
     statistics = hold_.solve(x, solve);
-    const std::vector<Matrix3d> F = deformation_gradients(x, head_.volume.T(soft_, Eigen::all), rest_);
+    std::vector<Matrix3d> F = deformation_gradients(x, head_.volume.T(soft_, Eigen::all), rest_);
+    repair_gradients(F, rest_.volume, neighbours_);
     VolumetricShape shape = shape_of_gradients(expression.name, jaw, soft_, F, options_.least_strain);
     shape.displacement = (x - head_.volume.V).cast<float>();
     return shape;
@@ -129,6 +169,7 @@ class ShapeSolver {
   const BlendshapeOptions& options_;
   VectorXi soft_;
   VectorXi below_;
+  MatrixX4i neighbours_;
   TetRest rest_;
   std::vector<int> held_;
   ProjectiveDynamics transfer_;

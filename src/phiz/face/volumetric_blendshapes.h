@@ -12,7 +12,7 @@ namespace phiz {
 
 struct BlendshapeOptions {
   double shape = 1;      ///< weight of as-rigid-as-possible elasticity (mu of eq. 5.6, 5.7)
-  double volume = 10;    ///< weight of the volume term (lambda); the source's ratio lambda = 10 mu
+  double volume = 100;   ///< weight of the volume term (lambda); the source's ratio lambda = 10 mu
   double transfer = 10;  ///< weight of the transferred skin gradients in the first solve (eq. 5.5)
   double hold =
       30;  ///< pull of the sculpted skin: hold * stiffness per metre of skin distance and millimetre, see .cpp
