@@ -20,7 +20,8 @@ LipSection section(const LipMotion& m, double along) {
   const auto mix = [&](double LipSection::*field) {
     return a * m.centre.*field + b * m.middle.*field + c * m.corner.*field;
   };
-  return {mix(&LipSection::up), mix(&LipSection::out), mix(&LipSection::wide), mix(&LipSection::roll)};
+  return {mix(&LipSection::up), mix(&LipSection::out), mix(&LipSection::wide), mix(&LipSection::left),
+          mix(&LipSection::roll)};
 }
 
 /// A curve from corner to corner resampled at `stations` places, even in x, right corner first.
@@ -86,7 +87,7 @@ std::vector<Handle> LipControl::handles(const ExpressionRecipe& recipe, const Ei
   const double mm = 1e-3;
   for (const LipVertex& v : vertices_) {
     const LipMotion& motion = v.upper ? recipe.upper_lip : recipe.lower_lip;
-    const double side = recipe.paired ? smoothstep(-0.3, 0.35, v.along) : 1;
+    const double side = recipe.paired && !recipe.both_halves ? smoothstep(-0.3, 0.35, v.along) : 1;
     const double weight = recipe.sealed ? 6 * v.grip : motion.hold * v.grip * side;
     if (weight <= 0) continue;
     const LipSection m = section(motion, v.along);
@@ -96,7 +97,7 @@ std::vector<Handle> LipControl::handles(const ExpressionRecipe& recipe, const Ei
     const Vector3d rolled = axis_point + Eigen::AngleAxisd(roll, f.along) * (v.rest - axis_point);
     const Vector3d forward = (f.out + 2 * Vector3d::UnitZ()).normalized();
     const double sideways = std::clamp(4 * v.along, -1.0, 1.0);
-    const Vector3d way = m.up * f.up + m.out * forward + m.wide * sideways * Vector3d::UnitX();
+    const Vector3d way = m.up * f.up + m.out * forward + (m.wide * sideways + m.left) * Vector3d::UnitX();
     const Vector3d moved = rolled + side * v.follow * mm * way;
     // The lower lip rides on the jaw, less so towards the corners; sealed lips share its way between them.
     const double q = std::min(1.0, v.along * v.along);

@@ -58,12 +58,13 @@ std::vector<ExpressionRecipe> brow_and_nose_recipes() {
       // AU9
       {.name = "noseSneerLeft",
        .paired = true,
-       .pulls = {{"levatorLabiiSuperiorisAlaequeNasi", 0.20},
+       .pulls = {{"levatorLabiiSuperiorisAlaequeNasi", 0.20, Part::whole, 0, 0.5},
                  {"nasalis", 0.12},
-                 {"levatorLabiiSuperioris", 0.10},
-                 {"procerus", 0.12, Part::left},
+                 {"levatorLabiiSuperioris", 0.06},
+                 {"procerus", 0.18, Part::left},
                  {"corrugator", 0.05}},
-       .lids = {.lower = 0.08}},
+       .upper_lip = {{.up = 1.2}, {.up = 2}, {.up = 1}, 0.5},
+       .lids = {.lower = 0.10}},
   };
 }
 
@@ -142,44 +143,59 @@ std::vector<ExpressionRecipe> lip_ring_recipes() {
       {.name = "cheekPuff",
        .upper_lip = {{.out = 1.2}, {.out = 1.2}, {.out = 0.5}, 1},
        .lower_lip = {{.out = 1.2}, {.out = 1.2}, {.out = 0.5}, 1},
-       .puff = 10},
+       .puff = 9},
   };
 }
 
 std::vector<ExpressionRecipe> mouth_pull_recipes() {
   return {
-      // AU12
+      // AU12: the ring of the lips follows the corner.
       {.name = "mouthSmileLeft",
        .paired = true,
        .pulls = {{"zygomaticusMajor", 0.34},
                  {"zygomaticusMinor", 0.18},
                  {"levatorAnguliOris", 0.20},
-                 {"orbicularisOculi", 0.06, Part::lower, 0.5, 1}},
-       .lids = {.lower = 0.08}},
+                 {"orbicularisOculi", 0.08, Part::lower, 0.5, 1}},
+       .upper_lip =
+           {{.up = 0.8, .out = -0.6}, {.up = 2.6, .out = -1.8, .wide = 2.5}, {.up = 8, .out = -6, .wide = 7}, 0.6},
+       .lower_lip =
+           {{.up = 0.3, .out = -0.5}, {.up = 2.2, .out = -1.6, .wide = 2.5}, {.up = 8, .out = -6, .wide = 7}, 0.6},
+       .lids = {.upper = 0.02, .lower = 0.10}},
       // AU15
       {.name = "mouthFrownLeft",
        .paired = true,
-       .pulls = {{"depressorAnguliOris", 0.30}, {"platysma", 0.02}, {"mentalis", 0.05}}},
-      // AU14
-      {.name = "mouthDimpleLeft", .paired = true, .pulls = {{"buccinator", 0.30}, {"risorius", 0.12}}},
+       .pulls = {{"depressorAnguliOris", 0.16}, {"platysma", 0.02}, {"mentalis", 0.06}},
+       .upper_lip = {{.up = -0.2}, {.up = -1.6, .wide = 0.8}, {.up = -7, .out = -2, .wide = 2.5}, 0.8},
+       .lower_lip = {{.up = 0.2}, {.up = -1.5, .wide = 0.8}, {.up = -7, .out = -2, .wide = 2.5}, 0.8}},
+      // AU14: the corner is drawn back into the cheek.
+      {.name = "mouthDimpleLeft",
+       .paired = true,
+       .pulls = {{"buccinator", 0.30}, {"risorius", 0.12}},
+       .upper_lip = {{}, {.out = -0.4, .wide = 1.4}, {.up = 0.6, .out = -4, .wide = 4}, 0.5},
+       .lower_lip = {{}, {.out = -0.4, .wide = 1.4}, {.up = 0.6, .out = -4, .wide = 4}, 0.5}},
       // AU20
       {.name = "mouthStretchLeft",
        .paired = true,
-       .pulls = {{"risorius", 0.50}, {"platysma", 0.06, Part::whole, 0.4, 1}, {"depressorAnguliOris", 0.06}}},
+       .pulls = {{"risorius", 0.45}, {"platysma", 0.08, Part::whole, 0.4, 1}, {"depressorAnguliOris", 0.05}},
+       .upper_lip = {{}, {.up = -0.3, .out = -0.8, .wide = 2.6}, {.up = -1.2, .out = -4, .wide = 7.5}, 0.8},
+       .lower_lip = {{}, {.up = -1.0, .out = -0.8, .wide = 2.6}, {.up = -1.2, .out = -4, .wide = 7.5}, 0.8}},
       // AU16
       {.name = "mouthLowerDownLeft",
        .paired = true,
-       .pulls = {{"depressorLabiiInferioris", 0.32}, {"platysma", 0.02}},
-       .lower_lip = {{.up = -3.5, .out = 0.5}, {.up = -5, .out = 0.5}, {.up = -0.5}, 0.8}},
+       .pulls = {{"depressorLabiiInferioris", 0.24}, {"platysma", 0.02}},
+       .lower_lip = {{.up = -3.5, .out = 0.3}, {.up = -5, .out = 0.2, .wide = 0.8}, {.up = -2.4, .wide = 1}, 1.2}},
       // AU10
       {.name = "mouthUpperUpLeft",
        .paired = true,
-       .pulls = {{"levatorLabiiSuperioris", 0.22}, {"zygomaticusMinor", 0.05}},
-       .upper_lip = {{.up = 3.5, .out = 0.5}, {.up = 5.5, .out = 0.5}, {.up = 0.5}, 0.8}},
-      // The whole mouth drawn aside: the muscles of one cheek pull, those of the other yield.
+       .pulls = {{"levatorLabiiSuperioris", 0.17}, {"zygomaticusMinor", 0.08}},
+       .upper_lip = {{.up = 3.5, .out = 0.3}, {.up = 5, .out = 0.2, .wide = 0.6}, {.up = 2.4, .wide = 0.6}, 1.2}},
+      // The whole mouth drawn aside: the muscles of one cheek pull, the ring of the lips follows.
       {.name = "mouthLeft",
        .paired = true,
-       .pulls = {{"zygomaticusMajor", 0.10}, {"risorius", 0.30}, {"buccinator", 0.22}}},
+       .both_halves = true,
+       .pulls = {{"zygomaticusMajor", 0.08}, {"risorius", 0.30}, {"buccinator", 0.22}},
+       .upper_lip = {{.out = 0.4, .left = 7.5}, {.out = 0.2, .left = 7}, {.left = 6}, 1.2},
+       .lower_lip = {{.out = 0.4, .left = 7}, {.out = 0.2, .left = 6.5}, {.left = 6}, 1.2}},
   };
 }
 

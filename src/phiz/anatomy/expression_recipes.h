@@ -26,6 +26,7 @@ struct LipSection {
   double up = 0;    ///< mm
   double out = 0;   ///< mm, away from the teeth
   double wide = 0;  ///< mm, away from the midline
+  double left = 0;  ///< mm, towards the person's left
   double roll = 0;  ///< degrees about the lip's length: positive turns the red outward, negative tucks it in
 };
 
@@ -43,8 +44,9 @@ struct LidMotion {
 };
 
 struct ExpressionRecipe {
-  std::string_view name;  ///< the left one of a pair
-  bool paired = false;    ///< also made for the right side, by reflection
+  std::string_view name;     ///< the left one of a pair
+  bool paired = false;       ///< also made for the right side, by reflection
+  bool both_halves = false;  ///< a paired recipe that moves the lips of both halves all the same
   std::vector<MusclePull> pulls{};
   LipMotion upper_lip{}, lower_lip{};
   LidMotion lids{};                                    ///< of the left eye
