@@ -126,7 +126,7 @@ inline Take sample_take(int frames, int side = 6) {
     frame.left_eye = Eigen::AngleAxisd(0.02 * i, Vector3d::UnitX()).toRotationMatrix();
     frame.right_eye = frame.left_eye.transpose();
     frame.part_weights = VectorXd::Constant(1, 0.1 * (i % 10));
-    frame.statistics = {true, 6, 4e-4, 1.5, i, 1e-5, 14.0 + i};
+    frame.statistics = {true, 6, 4e-4, 1.5, i, 1e-5, -0.01, 2e-6, 14.0 + i};
     take.frames.push_back(frame);
   }
   return take;

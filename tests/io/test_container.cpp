@@ -80,6 +80,7 @@ void expect_same(const TakeFrame& a, const TakeFrame& b) {
   EXPECT_EQ(a.statistics.converged, b.statistics.converged);
   EXPECT_EQ(a.statistics.contacts, b.statistics.contacts);
   EXPECT_EQ(a.statistics.residual, b.statistics.residual);
+  EXPECT_EQ(a.statistics.last_step, b.statistics.last_step);
   EXPECT_EQ(a.statistics.milliseconds, b.statistics.milliseconds);
 }
 

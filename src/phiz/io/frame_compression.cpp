@@ -56,6 +56,7 @@ CompressedFrames compress_frames(const MatrixX3d& rest, const std::vector<const 
   CompressedFrames result;
   Eigen::MatrixXf residual = displacements(rest, frames);
   const Eigen::Index count = residual.cols();
+  if (residual.size() == 0) return result;
   // Eigenvectors of D^T D: the principal weights per frame, least important first.
   Eigen::MatrixXd gram(count, count);
   parallel_for(

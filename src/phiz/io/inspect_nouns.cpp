@@ -54,7 +54,7 @@ json describe_take(const std::string& path) {
   const TakeReader reader(path);
   const Take& head = reader.head();
   std::vector<double> times;
-  double residual = 0, penetration = 0, moved = 0, last = 0, first = 0;
+  double residual = 0, penetration = 0, volume_change = 0, moved = 0, last = 0, first = 0;
   int iterations = 0, contacts = 0, unconverged = 0;
   for (int i = 0; i < reader.frames(); ++i) {
     const TakeFrame frame = reader.frame(i);
@@ -62,6 +62,7 @@ json describe_take(const std::string& path) {
     times.push_back(s.milliseconds);
     residual = std::max(residual, s.residual);
     penetration = std::max(penetration, s.penetration);
+    volume_change = std::max(volume_change, std::abs(s.volume_change));
     iterations = std::max(iterations, s.iterations);
     contacts = std::max(contacts, s.contacts);
     unconverged += s.converged ? 0 : 1;
@@ -89,6 +90,7 @@ json describe_take(const std::string& path) {
                             {"residualMax", residual},
                             {"contactsMax", contacts},
                             {"penetrationMaxMillimetres", to_millimetres * penetration},
+                            {"volumeChangeMax", volume_change},
                             {"millisecondsMedian", quantile(times, 0.5)},
                             {"milliseconds95", quantile(times, 0.95)},
                             {"millisecondsMax", times.back()}};
