@@ -269,7 +269,7 @@ double reference_skull_struts(const Vector3d& p) {
   const Vector3d q = left_mm(p);
   const double rim = implicit::bar(q, orbital_rim, {1, 1, 1}) + 1.2;
   const double arch = implicit::bar(q, zygomatic_arch, arch_section) + 0.3;
-  const double nose = capsule(q, {1.5, 37, 60}, {1.5, 21, 73}, 4.5, 2.6);
+  const double nose = capsule(q, {1, 37, 60}, {1, 22, 71.5}, 4, 2.2);
   return 1e-3 * carve(std::min({rim, arch, nose}), orbit(q) - 0.3, 1);
 }
 

@@ -17,6 +17,7 @@
 #include "phiz/geometry/spatial_query.h"
 #include "phiz/geometry/surface.h"
 #include "phiz/geometry/topology.h"
+#include "phiz/geometry/validate.h"
 
 namespace phiz {
 namespace {
@@ -158,14 +159,16 @@ Fields clipped_fields(const ReferenceWarp& warp, const RoomQuery& room, const Bo
 }
 
 /// Moves the vertices of `bone` that lie nearer to the skin than `least` away from it, and those of triangles that skin
-/// vertices come nearer to.
+/// vertices come nearer to, in small steps.
 void keep_clear(TriangleMesh& bone, const TriangleMesh& skin, double least) {
+  constexpr double step = 0.0006;
   const MatrixX3d skin_normals = vertex_normals(skin.V, skin.F);
   const SurfaceQuery skin_query(skin);
-  for (int pass = 0; pass < 8; ++pass) {
+  for (int pass = 0; pass < 14; ++pass) {
     MatrixX3d move = MatrixX3d::Zero(bone.V.rows(), 3);
     bool moved = false;
-    const auto push = [&](int v, const Vector3d& by) {
+    const auto push = [&](int v, double distance, const Vector3d& inward) {
+      const Vector3d by = std::min(distance, step) * inward;
       if (by.squaredNorm() > move.row(v).squaredNorm()) move.row(v) = by;
       moved = true;
     };
@@ -179,20 +182,36 @@ void keep_clear(TriangleMesh& bone, const TriangleMesh& skin, double least) {
       const double clear = depth > -0.5 * distance ? distance : -distance;
       if (clear >= least) continue;
       for (int k = 0; k < 3; ++k)
-        push(bone.F(near->triangle, k), (least - clear) * (0.4 + 0.6 * near->barycentric(k)) * inward);
+        push(bone.F(near->triangle, k), (least - clear) * (0.4 + 0.6 * near->barycentric(k)), inward);
     }
     for (Eigen::Index v = 0; v < bone.V.rows(); ++v) {
       const Vector3d p = bone.V.row(v);
-      const auto near = skin_query.closest_point_within(p, least);
+      const auto near = skin_query.closest_point_within(p, 3 * least);
       if (!near) continue;
       Vector3d inward = Vector3d::Zero();
       for (int k = 0; k < 3; ++k)
         inward -= near->barycentric(k) * skin_normals.row(skin.F(near->triangle, k)).transpose();
-      push(static_cast<int>(v), (least - std::sqrt(near->squared_distance)) * inward.normalized());
+      const double distance = std::sqrt(near->squared_distance);
+      const double clear = inward.dot(p - near->position) > -0.2 * distance ? distance : -distance;
+      if (clear < least) push(static_cast<int>(v), least - clear, inward.normalized());
     }
     if (!moved) return;
     bone.V += move;
   }
+}
+
+/// The zero set of `field` as the simulation needs it: clear of the skin and free of crossings. Where long triangles
+/// cannot do that, shorter ones are tried.
+TriangleMesh clear_surface(const ScalarField& field, const TriangleMesh& skin, double edge_length, double clearance,
+                           const char* name) {
+  TriangleMesh mesh;
+  for (const double finer : {1.0, 0.75, 0.55}) {
+    mesh = surface(field, bounds(skin.V), finer * edge_length, name);
+    keep_clear(mesh, skin, clearance);
+    if (untangle(mesh, 30)) return mesh;
+  }
+  require_no_self_intersections(mesh, name);
+  return mesh;
 }
 
 }  // namespace
@@ -202,14 +221,9 @@ BoneSurfaces build_bones(const Proportions& proportions, const BoneEnvelope& ski
   const ReferenceWarp warp(proportions);
   const RoomQuery room(proportions, skin, options);
   const Fields fields = clipped_fields(warp, room, options, false);
-  const Box box = bounds(skin.V);
-  BoneSurfaces bones{surface(fields.skull, box, options.skull_edge, "skull"),
-                     surface(fields.mandible, box, options.mandible_edge, "mandible")};
-  keep_clear(bones.skull, simulated_skin, 0.8 * options.inner_clearance);
-  keep_clear(bones.mandible, simulated_skin, 0.8 * options.inner_clearance);
-  untangle(bones.skull, "skull", 40);
-  untangle(bones.mandible, "mandible", 40);
-  return bones;
+  const double clearance = 0.8 * options.inner_clearance;
+  return {clear_surface(fields.skull, simulated_skin, options.skull_edge, clearance, "skull"),
+          clear_surface(fields.mandible, simulated_skin, options.mandible_edge, clearance, "mandible")};
 }
 
 BoneSurfaces build_drawn_bones(const Proportions& proportions, const BoneEnvelope& skin, const BoneOptions& options) {

@@ -3,16 +3,15 @@
 
 #include <vector>
 
-#include "phiz/core/error.h"
 #include "phiz/geometry/surface.h"
 #include "phiz/geometry/topology.h"
 
 namespace phiz {
 
-int untangle(TriangleMesh& mesh, const std::string& name, int passes) {
+bool untangle(TriangleMesh& mesh, int passes) {
   for (int pass = 0; pass < passes; ++pass) {
     const auto crossings = self_intersections(mesh);
-    if (crossings.empty()) return pass;
+    if (crossings.empty()) return true;
     const auto neighbours = vertex_neighbours(mesh.F, static_cast<int>(mesh.V.rows()));
     std::vector<char> moving(mesh.V.rows(), 0);
     for (const auto& [a, b] : crossings) {
@@ -33,7 +32,7 @@ int untangle(TriangleMesh& mesh, const std::string& name, int passes) {
       mesh.V.row(v) = 0.4 * before.row(v) + 0.6 / static_cast<double>(neighbours[v].size()) * mean.transpose();
     }
   }
-  fail("the surface of the " + name + " crosses itself", "choose another person or a finer size");
+  return self_intersections(mesh).empty();
 }
 
 }  // namespace phiz
