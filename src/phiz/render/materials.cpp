@@ -32,10 +32,11 @@ Material eye_material() {
 
 Material enamel_material() {
   Material m;
-  m.albedo = {0.74, 0.69, 0.58};
+  m.albedo = {0.87, 0.79, 0.67};
   m.roughness = 0.20;
   m.specular = 0.05;
-  m.scatter = {0.25, 0.22, 0.18};
+  m.scatter = {0.55, 0.50, 0.42};
+  m.unlit = 0.16;  // stands in for the light that goes round inside the mouth
   return m;
 }
 

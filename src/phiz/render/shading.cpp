@@ -145,7 +145,9 @@ Vector3f radiance(const ShadingContext& c, const ShadedPoint& p, const Vector3f&
     if (visible > 0) glossy += light.irradiance * (visible * highlight(n, view, l, m, light.radius / distance));
   }
   diffuse /= pi;
-  const Vector3f occlusion = bounced(seen.ambient, albedo);
+  // Light that has entered elsewhere brightens the depths of what scatters.
+  const float ambient = seen.ambient + 0.4F * scatter.maxCoeff() * (1 - seen.ambient);
+  const Vector3f occlusion = bounced(ambient, albedo);
   diffuse += ambient_radiance(c, n).cwiseProduct(occlusion);
   const Vector3f mirrored = 2 * n.dot(view) * n - view;
   const float gloss_visible = std::clamp(
