@@ -57,8 +57,9 @@ LipControl::LipControl(const HeadTemplate& head) {
     const double distance = std::sqrt((line_.rowwise() - X.transpose()).rowwise().squaredNorm().minCoeff());
     const double grip = 1 - smoothstep(0.005, 0.015, distance);
     if (grip <= 0 || head.carrier[v] != static_cast<int>(Carrier::flesh)) continue;
-    LipVertex entry{v, std::clamp((X.x() - centre) / half, -1.2, 1.2), grip, 0, 0, true, X};
+    LipVertex entry{v, std::clamp((X.x() - centre) / half, -1.2, 1.2), grip, 0, 0, 0, true, X};
     entry.follow = 1 - smoothstep(0.004, 0.032, distance);
+    entry.near = 1 - smoothstep(0.003, 0.020, distance);
     entry.lip = 1 - smoothstep(0.006, 0.013, distance);
     const Frame frame = frame_at(entry.along);
     const auto k = static_cast<std::size_t>(i);
@@ -99,9 +100,11 @@ std::vector<Handle> LipControl::handles(const ExpressionRecipe& recipe, const Ei
     const double sideways = std::clamp(4 * v.along, -1.0, 1.0);
     const Vector3d way = m.up * f.up + m.out * forward + (m.wide * sideways + m.left) * Vector3d::UnitX();
     const Vector3d moved = rolled + side * v.follow * mm * way;
-    // The lower lip rides on the jaw, less so towards the corners; sealed lips share its way between them.
+    // The lower lip rides on the jaw, less so towards the corners; sealed lips meet halfway, their surroundings less.
     const double q = std::min(1.0, v.along * v.along);
-    const double ride = recipe.sealed ? 0.5 : v.upper ? 0.45 * q * q : 1 - 0.55 * q * q;
+    const double ride = recipe.sealed ? (v.upper ? 0.5 * v.near : 1 - 0.5 * v.near)
+                        : v.upper     ? 0.45 * q * q
+                                      : 1 - 0.55 * q * q;
     result.push_back({v.vertex, (1 - ride) * moved + ride * (jaw * moved), weight});
   }
   return result;

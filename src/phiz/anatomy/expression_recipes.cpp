@@ -27,7 +27,7 @@ std::vector<ExpressionRecipe> eye_recipes() {
        .pulls = {{"orbicularisOculi", 0.10, Part::lower, 0, 0.8}, {"orbicularisOculi", 0.04, Part::upper, 0, 1}},
        .lids = {.upper = 0.14, .lower = 0.34}},
       // AU5
-      {.name = "eyeWideLeft", .paired = true, .pulls = {{"frontalis", 0.02}}, .lids = {.upper = -0.36, .lower = -0.10}},
+      {.name = "eyeWideLeft", .paired = true, .pulls = {{"frontalis", 0.02}}, .lids = {.upper = -0.31, .lower = -0.09}},
       // AU6: the outer ring gathers the cheek under the eye.
       {.name = "cheekSquintLeft",
        .paired = true,
@@ -58,8 +58,8 @@ std::vector<ExpressionRecipe> brow_and_nose_recipes() {
       // AU9
       {.name = "noseSneerLeft",
        .paired = true,
-       .pulls = {{"levatorLabiiSuperiorisAlaequeNasi", 0.20, Part::whole, 0, 0.5},
-                 {"nasalis", 0.12},
+       .pulls = {{"levatorLabiiSuperiorisAlaequeNasi", 0.32, Part::whole, 0, 0.6},
+                 {"nasalis", 0.20},
                  {"levatorLabiiSuperioris", 0.06},
                  {"procerus", 0.18, Part::left},
                  {"corrugator", 0.05}},
@@ -73,11 +73,16 @@ std::vector<ExpressionRecipe> jaw_recipes() {
       {.name = "jawForward", .jaw_down = 1.5, .jaw_forward = 6},
       {.name = "jawLeft", .paired = true, .swing = 0.07, .jaw_down = 0.8, .jaw_side = 3.5},
       // AU27
-      {.name = "jawOpen", .open = 0.42, .jaw_down = 1.0, .jaw_forward = 4},
+      {.name = "jawOpen",
+       .upper_lip = {.hold = 0.5},
+       .lower_lip = {.hold = 0.5},
+       .open = 0.44,
+       .jaw_down = 1.0,
+       .jaw_forward = 4},
       // The lips stay closed while the jaw opens; made as the difference to jawOpen.
       {.name = "mouthClose",
        .pulls = {{"orbicularisOris", 0.05}},
-       .open = 0.42,
+       .open = 0.44,
        .jaw_down = 1.0,
        .jaw_forward = 4,
        .sealed = true},
