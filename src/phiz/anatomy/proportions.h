@@ -20,7 +20,7 @@ struct Proportions {
   Vector3d eye_centre{0.0315, 0.027, 0.0525};
   double eye_radius = 0.0120;
   Vector3d endocanthion{0.016, 0.0255, 0.0580}, exocanthion{0.0465, 0.0275, 0.0550};
-  Vector3d alare{0.0185, -0.005, 0.0800}, cheilion{0.0255, -0.038, 0.0735};
+  Vector3d alare{0.0185, -0.005, 0.0800}, cheilion{0.0245, -0.038, 0.0735};
   Vector3d zygion{0.0665, 0.008, 0.0330}, gonion{0.0520, -0.052, 0.0020}, tragion{0.0720, 0.003, -0.0120},
       euryon{0.0760, 0.075, -0.0250};
   Vector3d condyle{0.0500, 0.0, 0.0};

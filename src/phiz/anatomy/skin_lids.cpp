@@ -66,14 +66,17 @@ void place_lids(SkinForm& form, const Proportions& proportions, const IdentityPa
       form.place(topology.eye(ring, c), centre + p, ring >= 3 ? 20 : ring);
     }
     // Socket: from the margin round the eyeball to the pole behind it. At the inner canthus the lining first runs over
-    // to the front of the eyeball: the caruncle.
-    const bool caruncle = c == 0 || c == 1 || c == n - 1;
+    // to the front of the eyeball: the caruncle. At the outer canthus it does so a little.
+    const bool caruncle = c == 0 || c == 1 || c == n - 1, outer_canthus = c == 8;
     const Vector3d start = inner_edge.normalized();
     const Vector3d around = Vector3d(start.x(), start.y(), 0).normalized();
     const double angle0 = std::acos(std::clamp(start.z(), -1.0, 1.0));
     for (int ring = 7; ring <= 9; ++ring) {
-      constexpr double share[3] = {0.17, 0.50, 0.78}, caruncle_angle[3] = {1.02, 1.72, 2.42};
-      const double angle = caruncle ? caruncle_angle[ring - 7] : angle0 + share[ring - 7] * (M_PI - angle0);
+      constexpr double share[3] = {0.17, 0.50, 0.78}, caruncle_angle[3] = {1.02, 1.72, 2.42},
+                       canthus_angle[3] = {1.28, 1.86, 2.48};
+      const double angle = caruncle        ? caruncle_angle[ring - 7]
+                           : outer_canthus ? canthus_angle[ring - 7]
+                                           : angle0 + share[ring - 7] * (M_PI - angle0);
       const double r = radius + (ring == 7 ? 0.62 : back_clearance);
       form.place(topology.eye(ring, c),
                  centre + r * Vector3d(std::sin(angle) * around.x(), std::sin(angle) * around.y(), std::cos(angle)),
