@@ -126,8 +126,10 @@ double orbit(const Vector3d& p) {
   return blend(blend(bulb, cone, 8), opening, 5);
 }
 
-double nasal_opening(const Vector3d& p) {
+/// Piriform aperture; without its narrow upper part, which leaves very thin bone, unless `detailed`.
+double nasal_opening(const Vector3d& p, bool detailed) {
   const double lower = ellipsoid(p, {4.5, -0.5, 68}, {7.5, 7.5, 20});
+  if (!detailed) return lower;
   const double upper = ellipsoid(p, {0, 5, 70}, {6.3, 11, 18});
   return blend(lower, upper, 6);
 }
@@ -187,7 +189,7 @@ double skull_mm(const Vector3d& p, bool detailed) {
   f = blend(f, brow_and_orbital_rim(p), 8);
   f = blend(f, zygoma(p), 6);
   f = carve(f, orbit(p), 4);
-  f = carve(f, nasal_opening(p), 3);
+  f = carve(f, nasal_opening(p, detailed), 3);
   f = carve(f, palate(p), 3);
   f = blend(f, cervical_column(p, detailed), 6);
   return carve(f, mandible_mm(p) - 1.8, 1.5);

@@ -24,9 +24,9 @@ class ReferenceWarp {
 Proportions reference_proportions();
 
 /// Distance-like fields in the reference head, exactly mirror symmetric.
-/// Skull: cranium, face and cervical column, the latter with the processes of its vertebrae when `detailed`. Mandible:
-/// with condyles and coronoid processes. Struts: the thin parts (orbital rim and zygomatic arch; the ramus) that must
-/// not break where the flesh over them is thin.
+/// Skull: cranium, face and cervical column; when `detailed` with the processes of the vertebrae and the whole nasal
+/// opening. Mandible: with condyles and coronoid processes. Struts: the thin parts (orbital rim, zygomatic arch, nasal
+/// bones; ramus) that must not break where the flesh over them is thin.
 double reference_skull(const Vector3d& p, bool detailed);
 double reference_mandible(const Vector3d& p);
 double reference_skull_struts(const Vector3d& p);

@@ -205,7 +205,7 @@ void keep_clear(TriangleMesh& bone, const TriangleMesh& skin, double least) {
 TriangleMesh clear_surface(const ScalarField& field, const TriangleMesh& skin, double edge_length, double clearance,
                            const char* name) {
   TriangleMesh mesh;
-  for (const double finer : {1.0, 0.75, 0.55}) {
+  for (const double finer : {1.0, 0.7, 0.5, 0.3}) {
     mesh = surface(field, bounds(skin.V), finer * edge_length, name);
     keep_clear(mesh, skin, clearance);
     if (untangle(mesh, 30)) return mesh;
