@@ -54,12 +54,16 @@ void store_sparse(const Hdf5Group& group, const SparseMatrixd& matrix) {
   group.write("value", Eigen::Map<const VectorXd>(m.valuePtr(), m.nonZeros()));
 }
 
-SparseMatrixd stored_sparse(const Hdf5Group& group) {
+SparseMatrixd stored_sparse(const Hdf5Group& group, Eigen::Index expected_rows, Eigen::Index expected_cols) {
   const int rows = group.integer("rows"), cols = group.integer("cols");
+  if (rows != expected_rows || cols != expected_cols) {
+    reject(group.where(),
+           fmt::format("the matrix is {} x {}, expected {} x {}", rows, cols, expected_rows, expected_cols));
+  }
   const auto start = group.read<VectorXi>("row_start");
   const auto column = group.read<VectorXi>("column");
   const auto value = group.read<VectorXd>("value");
-  if (rows < 0 || cols < 0 || start.size() != rows + 1LL || value.size() != column.size()) {
+  if (start.size() != rows + 1LL || value.size() != column.size()) {
     reject(group.where(), "the arrays of the sparse matrix do not fit together");
   }
   if (start[0] != 0 || start[rows] != column.size()) reject(group.where("row_start"), "does not cover all values");

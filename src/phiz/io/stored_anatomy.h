@@ -14,9 +14,10 @@ namespace phiz {
 void store_mesh(const Hdf5Group& group, const TriangleMesh& mesh);
 TriangleMesh stored_mesh(const Hdf5Group& group);
 
-/// Attributes rows, cols; arrays row_start, column, value. Read: indices in range, columns ascending in each row.
+/// Attributes rows, cols; arrays row_start, column, value. Read: the size is as expected, indices are in range and
+/// columns ascend in each row.
 void store_sparse(const Hdf5Group& group, const SparseMatrixd& matrix);
-SparseMatrixd stored_sparse(const Hdf5Group& group);
+SparseMatrixd stored_sparse(const Hdf5Group& group, Eigen::Index expected_rows, Eigen::Index expected_cols);
 
 /// Children "0", "1", ... with an attribute "count" on the group.
 void store_count(const Hdf5Group& group, std::size_t count);

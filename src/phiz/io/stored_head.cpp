@@ -204,8 +204,9 @@ HeadTemplate stored_head(const Hdf5Group& group) {
   head.skin_vertices = volume.read<VectorXi>("skin_vertices");
   head.skin_triangles = volume.read<MatrixX3i>("skin_triangles");
   head.skin = stored_mesh(group.group("skin"));
-  head.skin_sampling = stored_sparse(group.group("skin_sampling"));
-  head.skin_interpolation = stored_sparse(group.group("skin_interpolation"));
+  const auto simulated = head.skin_vertices.size(), drawn = head.skin.V.rows();
+  head.skin_sampling = stored_sparse(group.group("skin_sampling"), simulated, drawn);
+  head.skin_interpolation = stored_sparse(group.group("skin_interpolation"), drawn, simulated);
   head.skin_regions = stored_regions(group.group("skin_regions"));
   head.parts = stored_parts(group.group("parts"));
   head.jaw = stored_joint(group.group("jaw"));
