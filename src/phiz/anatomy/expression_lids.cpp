@@ -68,6 +68,7 @@ LidControl::LidControl(const HeadTemplate& head, const EyeShape& eye, const std:
     }
     return angles;
   };
+  nearness_.setZero(head.volume.V.rows());
   upper_angle_ = margin_angles(upper);
   lower_angle_ = margin_angles(lower);
   const auto margin_height = [&](const MatrixX3d& loop, double a) {  // of the outer edge of the margin, near `a`
@@ -98,6 +99,7 @@ LidControl::LidControl(const HeadTemplate& head, const EyeShape& eye, const std:
         (1 - smoothstep(6 * degree, (lid.upper ? 66 : 55) * degree, beyond)) * (1 - smoothstep(0, 0.006, aside));
     lid.weight = 8 * (1 - smoothstep(10 * degree, 48 * degree, beyond)) * near * (1 - smoothstep(0.001, 0.006, aside));
     lid.flat = std::min(distance, margin_height(lid.upper ? upper : lower, std::clamp(lid.across, 0.0, 1.0)) + 0.0003);
+    nearness_[v] = std::min(1.0, lid.weight / 4);
     if (lid.weight > 0) vertices_.push_back(lid);
   }
 }

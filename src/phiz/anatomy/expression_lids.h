@@ -34,6 +34,9 @@ class LidControl {
   /// Keeps lids and socket off the eyeball.
   Obstacle eyeball(const LidMotion& motion) const;
 
+  /// 1 for vertices at the margins of the lids, 0 for those that no margin leads; one entry per row of volume.V.
+  const VectorXd& nearness() const { return nearness_; }
+
  private:
   struct LidVertex {
     int vertex;
@@ -52,6 +55,7 @@ class LidControl {
   double sign_ = 1;                     ///< +1 left, -1 right
   Vector3d axis_, up_, ahead_;          ///< canthal axis (towards the outer canthus), and the directions across it
   VectorXd upper_angle_, lower_angle_;  ///< elevation of the margins, evenly spaced in `across`
+  VectorXd nearness_;
   std::vector<LidVertex> vertices_;
   std::vector<std::pair<int, double>> near_;  ///< vertices near the eyeball and their distance from its centre at rest
 };

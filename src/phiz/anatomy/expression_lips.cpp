@@ -47,6 +47,7 @@ LipControl::LipControl(const HeadTemplate& head) {
   const MatrixX3d upper = by_width(skin_curve(head, "loop:upperLipLine"));
   const MatrixX3d lower = by_width(skin_curve(head, "loop:lowerLipLine"));
   line_ = 0.5 * (upper + lower);
+  nearness_.setZero(head.volume.V.rows());
   const std::vector<char> in_upper = simulation_mask(head, {"upperLip", "upperLipInner"});
   const std::vector<char> in_lower = simulation_mask(head, {"lowerLip", "lowerLipInner"});
   const double half = 0.5 * (line_(stations - 1, 0) - line_(0, 0));
@@ -55,12 +56,13 @@ LipControl::LipControl(const HeadTemplate& head) {
     const int v = head.skin_vertices[i];
     const Vector3d X = head.volume.V.row(v).transpose();
     const double distance = std::sqrt((line_.rowwise() - X.transpose()).rowwise().squaredNorm().minCoeff());
-    const double grip = 1 - smoothstep(0.005, 0.015, distance);
+    nearness_[v] = 1 - smoothstep(0.003, 0.008, distance);
+    const double grip = std::pow(1 - smoothstep(0.002, 0.016, distance), 2);
     if (grip <= 0 || head.carrier[v] != static_cast<int>(Carrier::flesh)) continue;
     LipVertex entry{v, std::clamp((X.x() - centre) / half, -1.2, 1.2), grip, 0, 0, 0, true, X};
-    entry.follow = 1 - smoothstep(0.004, 0.032, distance);
-    entry.near = 1 - smoothstep(0.003, 0.020, distance);
-    entry.lip = 1 - smoothstep(0.006, 0.013, distance);
+    entry.follow = 1 - smoothstep(0.002, 0.024, distance);
+    entry.near = 1 - smoothstep(0.001, 0.016, distance);
+    entry.lip = 1 - smoothstep(0.005, 0.012, distance);
     const Frame frame = frame_at(entry.along);
     const auto k = static_cast<std::size_t>(i);
     entry.upper = in_upper[k] || (!in_lower[k] && (X - frame.middle).dot(frame.up) > 0);
@@ -89,7 +91,9 @@ std::vector<Handle> LipControl::handles(const ExpressionRecipe& recipe, const Ei
   for (const LipVertex& v : vertices_) {
     const LipMotion& motion = v.upper ? recipe.upper_lip : recipe.lower_lip;
     const double side = recipe.paired && !recipe.both_halves ? smoothstep(-0.3, 0.35, v.along) : 1;
-    const double weight = recipe.sealed ? 6 * v.grip : motion.hold * v.grip * side;
+    const double q = std::min(1.0, v.along * v.along);
+    double weight = recipe.sealed ? 4 * v.grip : motion.hold * v.grip * side;
+    if (recipe.open > 0 && !recipe.sealed) weight *= 1 - q;  // the corners are free on an open jaw
     if (weight <= 0) continue;
     const LipSection m = section(motion, v.along);
     const Frame f = frame_at(v.along);
@@ -101,8 +105,7 @@ std::vector<Handle> LipControl::handles(const ExpressionRecipe& recipe, const Ei
     const Vector3d way = m.up * f.up + m.out * forward + (m.wide * sideways + m.left) * Vector3d::UnitX();
     const Vector3d moved = rolled + side * v.follow * mm * way;
     // The lower lip rides on the jaw, less so towards the corners; sealed lips meet halfway, their surroundings less.
-    const double q = std::min(1.0, v.along * v.along);
-    const double ride = recipe.sealed ? (v.upper ? 0.5 * v.near : 1 - 0.5 * v.near)
+    const double ride = recipe.sealed ? (v.upper ? 0.38 * v.near : 1 - 0.62 * v.near)
                         : v.upper     ? 0.45 * q * q
                                       : 1 - 0.55 * q * q;
     result.push_back({v.vertex, (1 - ride) * moved + ride * (jaw * moved), weight});

@@ -21,14 +21,17 @@ class LipControl {
   /// motion out across the midline. None where the recipe does not hold the lips.
   std::vector<Handle> handles(const ExpressionRecipe& recipe, const Eigen::Isometry3d& jaw) const;
 
+  /// 1 for vertices at the parting line, 0 for those 8 mm away from it; one entry per row of volume.V.
+  const VectorXd& nearness() const { return nearness_; }
+
  private:
   /// One skin vertex near the mouth.
   struct LipVertex {
     int vertex;     ///< row of volume.V
     double along;   ///< -1 right corner, 0 centre, 1 left corner
-    double grip;    ///< how firmly the ring of the lips holds it: 1 near the parting line, 0 at 15 mm
-    double follow;  ///< share of the lip's way that it goes: 1 near the line, 0 at 32 mm
-    double near;    ///< share of a sealed lip's way: 1 near the line, 0 at 20 mm
+    double grip;    ///< how firmly the ring of the lips holds it: 1 near the parting line, 0 at 16 mm
+    double follow;  ///< share of the lip's way that it goes: 1 near the line, 0 at 24 mm
+    double near;    ///< share of a sealed lip's way: 1 near the line, 0 at 16 mm
     double lip;     ///< how far it belongs to the body of the lip, which rolls
     bool upper;
     Vector3d rest;
@@ -38,6 +41,7 @@ class LipControl {
   };
   Frame frame_at(double along) const;
 
+  VectorXd nearness_;
   std::vector<LipVertex> vertices_;
   MatrixX3d line_;  ///< the parting line from the right corner to the left, evenly spaced in `along`
 };

@@ -3,11 +3,25 @@
 
 #include "phiz/anatomy/expression_puff.h"
 #include "phiz/anatomy/expression_teeth.h"
+#include "phiz/geometry/operators.h"
 
 namespace phiz {
 namespace {
 
 constexpr int iterations = 30;
+constexpr int smoothing_passes = 4;
+
+/// Evens out displacements D (one row per vertex of V) where `calm` (0 to 1 per row) allows: tets are irregular, skin
+/// is not. Cotangent weights, so that the pattern of the triangles leaves no trace.
+void smooth(MatrixX3d& D, const MatrixX3d& V, const MatrixX3i& triangles, const VectorXd& calm) {
+  const SparseMatrixd L = cotangent_laplacian(V, triangles);
+  const VectorXd diagonal = L.diagonal();
+  for (int pass = 0; pass < smoothing_passes; ++pass) {
+    const MatrixX3d difference = L * D;
+    for (Eigen::Index v = 0; v < D.rows(); ++v)
+      if (diagonal[v] > 0) D.row(v) -= 0.6 * calm[v] / diagonal[v] * difference.row(v);
+  }
+}
 
 }  // namespace
 
@@ -34,8 +48,14 @@ MatrixX3d ExpressionPlayer::play(const ExpressionRecipe& recipe) const {
   const std::vector<Obstacle> obstacles = {dental_arches(head_, proportions_.arch, jaw),
                                            left_lids_.eyeball(recipe.lids), right_lids_.eyeball(other)};
   const MatrixX3d X = poser_.pose(handles, obstacles, jaw, iterations);
-  const MatrixX3d moved = (X - head_.volume.V)(head_.skin_vertices, Eigen::all);
-  return head_.skin_interpolation * moved;
+  MatrixX3d D = X - head_.volume.V;
+  VectorXd calm(D.rows());
+  for (Eigen::Index v = 0; v < D.rows(); ++v)
+    calm[v] = head_.carrier[v] == static_cast<int>(Carrier::flesh)
+                  ? (1 - lips_.nearness()[v]) * (1 - left_lids_.nearness()[v]) * (1 - right_lids_.nearness()[v])
+                  : 0;
+  smooth(D, head_.volume.V, head_.skin_triangles, calm);
+  return head_.skin_interpolation * D(head_.skin_vertices, Eigen::all);
 }
 
 }  // namespace phiz
