@@ -33,6 +33,8 @@ struct SkinForm {
 void place_sheet(SkinForm& form);
 /// Lays the scalp of the sheet on the vault of the skull, and fills the crown.
 void place_vault(SkinForm& form);
+/// The neck, with its cut face at the foot.
+void place_neck(SkinForm& form);
 /// Point (u, v) of the Coons patch that fills a grid 0..p x 0..q of placed border vertices and the midline u = 0.
 Vector3d coons(const SkinForm& form, const std::function<int(int, int)>& vertex, int u, int p, int v, int q);
 /// Lips and their surroundings of the mean head: mouth rings 1 to 7.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "phiz/anatomy/skin_form.h"
@@ -313,18 +312,6 @@ constexpr Place places[] = {
     {16, 26, 0, 123, -71},
 };
 
-/// The neck is an upright oval column: its sections at the lowest rows, millimetres.
-struct NeckSection {
-  int j;
-  double y, half_width, half_depth, centre_z;
-  double muscle_angle;  // of the ridge of the sternocleidomastoid, degrees from the front
-  double larynx;        // how far the larynx stands out
-};
-constexpr NeckSection neck_sections[] = {
-    {0, -170, 52, 47, -45, 26, 0.5}, {1, -146, 49, 46.5, -41, 42, 1.5}, {2, -121, 47.5, 47.5, -37.5, 62, 3.2}};
-constexpr double neck_angles[SkinTopology::columns + 1] = {0,  9,  18,  27,  36,  46,  56,  66, 76,
-                                                           86, 96, 106, 117, 129, 142, 161, 180};
-
 /// How firmly the surface keeps to the places: firm in the face, loose on the sides where they are few.
 double firmness(int i, int j) {
   if (i == SkinTopology::columns || j > 21) return 0.3;
@@ -371,42 +358,10 @@ void fill_rows(SkinForm& form) {
 
 void place_sheet(SkinForm& form) {
   const SkinTopology& topology = skin_topology();
-  for (const NeckSection& section : neck_sections)
-    for (int i = 0; i <= SkinTopology::columns; ++i) {
-      const double angle = neck_angles[i] * std::numbers::pi / 180;
-      const auto ridge = [&](double at, double width) { return std::exp(-std::pow((neck_angles[i] - at) / width, 2)); };
-      const double muscle = 2.2 * ridge(section.muscle_angle, 11) - 1.6 * ridge(section.muscle_angle - 24, 12);
-      const double larynx = section.larynx * ridge(0, 12);
-      const double swell = 1 + (muscle + larynx) / section.half_depth;
-      form.place(topology.sheet(i, section.j), {swell * section.half_width * std::sin(angle), section.y,
-                                                section.centre_z + swell * section.half_depth * std::cos(angle)});
-    }
   for (const Place& p : places) form.place(topology.sheet(p.i, p.j), {p.x, p.y, p.z}, firmness(p.i, p.j));
   fill_rows(form);
   place_vault(form);
-  for (int u = 0; u <= 6; ++u)
-    for (int v = 0; v <= 4; ++v) {
-      form.keep_control(topology.foot(u, v));
-    }
-  for (int u = 0; u < 6; ++u)
-    for (int v = 1; v < 4; ++v) {
-      Vector3d p = coons(
-          form, [&](int a, int b) { return topology.foot(a, b); }, u, 6, v, 4);
-      p.y() = neck_sections[0].y;
-      form.place(topology.foot(u, v), p);
-    }
-  place_vault(form);
-  for (int u = 0; u <= 6; ++u)
-    for (int v = 0; v <= 4; ++v) {
-      form.keep_control(topology.foot(u, v));
-    }
-  for (int u = 0; u < 6; ++u)
-    for (int v = 1; v < 4; ++v) {
-      const double angle = std::numbers::pi * v / 4, across = u / 6.0;
-      const NeckSection& section = neck_sections[0];
-      form.place(topology.foot(u, v), {section.half_width * across * (0.6 + 0.4 * std::sin(angle)), section.y,
-                                       section.centre_z + section.half_depth * (1 - 0.3 * across) * std::cos(angle)});
-    }
+  place_neck(form);
 }
 
 }  // namespace phiz
