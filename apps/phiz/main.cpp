@@ -47,6 +47,7 @@ int run(int argc, char** argv) {
   phiz::add_export(app);
   phiz::add_inspect(app);
   phiz::add_render(app);
+  phiz::add_bench(app);
 
   try {
     app.parse(argc, argv);

@@ -2,6 +2,7 @@
 #include "phiz/elasticity/contact.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "phiz/core/error.h"
@@ -18,14 +19,15 @@ struct Watch {
   int obstacle = -1;
   int own_patch = -1;
   int pair = -1;
+  int hint = -1;  ///< the triangle that was closest
   bool known = false;
   double clear = 0;   ///< no contact was nearer than this ...
   Vector3d at;        ///< ... when the vertex was here
   double travel = 0;  ///< ... and the obstacle had travelled so far
 };
 
-constexpr double search_reach = 5e-3;  ///< beyond the margin; a longer search is seldom of use for the next call
-constexpr double same_side = 0.5;      ///< cosine above which a penetrating vertex faces as its obstacle does
+constexpr double search_reach = 2.5e-3;  ///< beyond the margin; a longer search is seldom of use for the next call
+constexpr double same_side = 0.5;        ///< cosine above which a penetrating vertex faces as its obstacle does
 
 }  // namespace
 
@@ -37,14 +39,19 @@ struct ContactScene::State {
   int pairs = 0;
   int left_out = 0;
 
-  /// The contact of a watch, if it is one: not on the rim of a patch, not pushed through from behind.
-  std::optional<SignedContact> contact(const Watch& watch, const Vector3d& p, double reach) const {
-    std::optional<SignedContact> found = obstacles[static_cast<std::size_t>(watch.obstacle)].closest(p, reach);
-    if (!found || found->on_rim || found->gap < -options.depth_limit) return std::nullopt;
-    if (found->gap < 0 && watch.own_patch >= 0 &&
-        obstacles[static_cast<std::size_t>(watch.own_patch)].normal_at(watch.vertex).dot(found->normal) > same_side)
-      return std::nullopt;
-    return found;
+  /// Whether the closest point is a contact: not on the rim of a patch, not pushed through from behind.
+  bool is_contact(const Watch& watch, const std::optional<SignedContact>& closest) const {
+    if (!closest || closest->on_rim || closest->gap < -options.depth_limit) return false;
+    return closest->gap >= 0 || watch.own_patch < 0 ||
+           obstacles[static_cast<std::size_t>(watch.own_patch)].normal_at(watch.vertex).dot(closest->normal) <=
+               same_side;
+  }
+
+  /// Lower bound of the distance to the obstacle by what its last search found.
+  double clearance(const Watch& watch, const Vector3d& p) const {
+    if (!watch.known) return 0;
+    const double travel = obstacles[static_cast<std::size_t>(watch.obstacle)].travel() - watch.travel;
+    return watch.clear - (p - watch.at).norm() - travel;
   }
 };
 
@@ -82,8 +89,9 @@ void ContactScene::add_pair(const VectorXi& vertices, int obstacle, int own_patc
     watch.obstacle = obstacle;
     watch.own_patch = own_patch;
     watch.pair = state_->pairs;
-    const std::optional<SignedContact> now = state_->contact(watch, rest.row(v), state_->options.depth_limit);
-    if (now && now->gap < 0) {
+    const auto now =
+        state_->obstacles[static_cast<std::size_t>(obstacle)].closest(rest.row(v), state_->options.depth_limit);
+    if (state_->is_contact(watch, now) && now->gap < 0) {
       ++state_->left_out;
       continue;
     }
@@ -120,21 +128,17 @@ std::vector<ContactRow> ContactScene::detect(const PositionView& positions) {
       [&](std::ptrdiff_t i) {
         Watch& watch = s.watches[static_cast<std::size_t>(i)];
         const Vector3d p = positions[watch.vertex];
-        const double travel = s.obstacles[static_cast<std::size_t>(watch.obstacle)].travel();
-        if (watch.known && watch.clear - (p - watch.at).norm() - (travel - watch.travel) > margin) return;
+        if (s.clearance(watch, p) > margin) return;
         const double reach = margin + search_reach;
-        const std::optional<SignedContact> contact = s.contact(watch, p, reach);
-        watch.known = false;
-        if (contact && contact->gap <= margin) {
-          found[static_cast<std::size_t>(i)] = contact;
-          return;
-        }
-        if (!contact && s.obstacles[static_cast<std::size_t>(watch.obstacle)].closest(p, reach))
-          return;  // rim or far side
-        watch.known = true;
-        watch.clear = contact ? contact->gap : reach;
+        const Obstacle& obstacle = s.obstacles[static_cast<std::size_t>(watch.obstacle)];
+        const std::optional<SignedContact> nearest = obstacle.closest(p, reach, watch.hint);
+        watch.hint = nearest ? nearest->triangle : -1;
+        if (s.is_contact(watch, nearest) && nearest->gap <= margin) found[static_cast<std::size_t>(i)] = nearest;
+        // The far side of an obstacle and the rim of a patch are no contact, yet near: look again.
+        watch.clear = nearest ? std::abs(nearest->gap) : reach;
+        watch.known = watch.clear > margin && (!nearest || nearest->gap > 0);
         watch.at = p;
-        watch.travel = travel;
+        watch.travel = obstacle.travel();
       },
       64);
 
@@ -170,8 +174,11 @@ double ContactScene::penetration(const PositionView& positions) const {
       static_cast<std::ptrdiff_t>(s.watches.size()),
       [&](std::ptrdiff_t i) {
         const Watch& watch = s.watches[static_cast<std::size_t>(i)];
-        const auto contact = s.contact(watch, positions[watch.vertex], s.options.depth_limit);
-        if (contact) depth[static_cast<std::size_t>(i)] = std::max(0.0, -contact->gap);
+        const Vector3d p = positions[watch.vertex];
+        if (s.clearance(watch, p) > 0) return;
+        const auto contact =
+            s.obstacles[static_cast<std::size_t>(watch.obstacle)].closest(p, s.options.depth_limit, watch.hint);
+        if (s.is_contact(watch, contact)) depth[static_cast<std::size_t>(i)] = std::max(0.0, -contact->gap);
       },
       64);
   return depth.empty() ? 0.0 : *std::max_element(depth.begin(), depth.end());

@@ -12,7 +12,7 @@
 namespace phiz {
 
 struct ContactOptions {
-  double margin = 1.0e-3;     ///< rows are made for gaps below this, metres: what a vertex may cover in one iteration
+  double margin = 6e-4;       ///< rows are made for gaps below this, metres: what a vertex may cover in one iteration
   double depth_limit = 6e-3;  ///< a vertex deeper than this is taken to be on the other side of the obstacle, metres
 };
 
@@ -64,7 +64,8 @@ class ContactScene {
   /// the last call; what it returns does not depend on earlier calls.
   std::vector<ContactRow> detect(const PositionView& positions);
 
-  /// Deepest penetration over all pairs, metres, >= 0, by a search of every vertex that keeps no state.
+  /// Deepest penetration over all pairs, metres, >= 0, of every vertex that can have come near: a
+  /// second look at the state, apart from the rows that the solver used.
   double penetration(const PositionView& positions) const;
   double penetration(const MatrixX3d& x) const;
 

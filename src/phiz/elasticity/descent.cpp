@@ -167,8 +167,7 @@ double Descent::contact_residual(const ContactRows& contact, const double* gradi
 SolveStatistics Descent::run(double* x) {
   const std::ptrdiff_t size = system_.size();
   const auto allocate = [size] { return hwy::AllocateAligned<double>(static_cast<std::size_t>(size)); };
-  AlignedVector g = allocate(), next_g = allocate(), v = allocate(), next_v = allocate(), p = allocate(),
-                change = allocate();
+  AlignedVector g = allocate(), next_g = allocate(), v = allocate(), next_v = allocate(), p = allocate();
   AlignedVector trial = hwy::AllocateAligned<double>(static_cast<std::size_t>(4 * system_.vertices));
   std::copy_n(x, 4 * system_.vertices, trial.get());
   SolveStatistics statistics;
@@ -204,14 +203,30 @@ SolveStatistics Descent::run(double* x) {
       alpha *= 0.5;
     }
     if (!accepted) {
-      if (inverse_.pairs() == 0) break;
+      if (inverse_.pairs() == 0) {
+        statistics.residual = contact_residual(contact, g.get()) / system_.force_scale();
+        break;
+      }
       inverse_.clear();  // fall back to a plain step from the same place
       continue;
     }
+    std::copy_n(trial.get(), size, x);
+    energy = next_energy;
+    statistics.last_step = alpha * reach;
+    statistics.contacts = static_cast<int>((lambda_.array() > 0).count());
+    const double force = contact_residual(contact, next_g.get());
+    contact = detect(x);
+    statistics.penetration = deepest(contact);
+    // A plain step is short of the way to go by up to the ratio of the softest to the stiffest response.
+    const bool small_step = (plain ? plain_shortfall : 1.0) * statistics.last_step <= options_.step_tolerance;
+    const bool last = statistics.iterations == options_.max_iterations;
+    if (small_step || last) statistics.residual = force / system_.force_scale();
+    statistics.converged = small_step && statistics.residual <= options_.residual_tolerance &&
+                           statistics.penetration <= options_.penetration_tolerance;
+    if (last || (statistics.converged && statistics.iterations >= options_.min_iterations)) break;
+
     std::copy_n(next_g.get(), size, next_v.get());
     system_.solver->solve(next_v.get());
-    statistics.last_step = alpha * reach;
-    statistics.residual = contact_residual(contact, next_g.get());
     if (options_.history > 0) {
       for (std::ptrdiff_t i = 0; i < size; ++i) {
         const auto s = static_cast<std::size_t>(i);
@@ -221,20 +236,8 @@ SolveStatistics Descent::run(double* x) {
       }
       inverse_.add(p.get(), g.get(), v.get());
     }
-    std::copy_n(trial.get(), size, x);
     std::swap(g, next_g);
     std::swap(v, next_v);
-    energy = next_energy;
-    statistics.contacts = static_cast<int>((lambda_.array() > 0).count());
-    contact = detect(x);
-    statistics.penetration = deepest(contact);
-    // A plain step is short of the way to go by up to the ratio of the softest to the stiffest response.
-    const double shortfall = plain ? plain_shortfall : 1.0;
-    const bool small_step = shortfall * statistics.last_step <= options_.step_tolerance;
-    if (small_step || statistics.iterations == options_.max_iterations) statistics.residual /= system_.force_scale();
-    statistics.converged = small_step && statistics.residual <= options_.residual_tolerance &&
-                           statistics.penetration <= options_.penetration_tolerance;
-    if (statistics.converged && statistics.iterations >= options_.min_iterations) break;
   }
   statistics.energy = energy;
   return statistics;

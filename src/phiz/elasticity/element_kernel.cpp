@@ -85,7 +85,7 @@ double EvaluateElements(const ElementBlocks& e, const TermWeights& w, const doub
         const Lane inverse_goal = hn::Div(hn::Set(d, 1.0), goal);
         Lane G[9];
         for (int k = 0; k < 9; ++k) G[k] = hn::Mul(inverse_goal, F[k]);
-        ClosestUnimodular3(d, G, T);
+        ClosestUnimodular3(d, G, T, 1e-19);
         const Lane volume = hn::Set(d, w.volume);
         for (int k = 0; k < 9; ++k) {
           const Lane delta = hn::NegMulAdd(goal, T[k], F[k]);

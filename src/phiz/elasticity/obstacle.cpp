@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "phiz/core/error.h"
@@ -41,22 +42,36 @@ Obstacle::Obstacle(const MatrixX3d& V, const MatrixX3i& F, std::vector<int> vert
   for (std::size_t i = 0; i < vertices_.size(); ++i) local_.emplace_back(vertices_[i], static_cast<int>(i));
   low_ = V_.colwise().minCoeff();
   high_ = V_.colwise().maxCoeff();
-  update_normals();
+  ring_start_.assign(static_cast<std::size_t>(V_.rows()) + 1, 0);
+  for (Eigen::Index i = 0; i < F_.size(); ++i) ++ring_start_[static_cast<std::size_t>(F_.data()[i]) + 1];
+  std::partial_sum(ring_start_.begin(), ring_start_.end(), ring_start_.begin());
+  ring_.resize(static_cast<std::size_t>(F_.size()));
+  std::vector<int> next(ring_start_.begin(), ring_start_.end() - 1);
+  for (Eigen::Index f = 0; f < F_.rows(); ++f)
+    for (int k = 0; k < 3; ++k)
+      ring_[static_cast<std::size_t>(next[static_cast<std::size_t>(F_(f, k))]++)] = static_cast<int>(f);
 }
 
-void Obstacle::update_normals() {
-  face_normals_.resize(F_.rows(), 3);
-  vertex_normals_.setZero(V_.rows(), 3);
-  for (Eigen::Index f = 0; f < F_.rows(); ++f) {
-    const Vector3d p[3] = {V_.row(F_(f, 0)), V_.row(F_(f, 1)), V_.row(F_(f, 2))};
-    const Vector3d n = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
-    face_normals_.row(f) = n;
-    for (int k = 0; k < 3; ++k) {
-      const Vector3d a = p[(k + 1) % 3] - p[k], b = p[(k + 2) % 3] - p[k];
-      vertex_normals_.row(F_(f, k)) += std::atan2(a.cross(b).norm(), a.dot(b)) * n.transpose();
-    }
+Vector3d Obstacle::face_normal(int face) const {
+  const Vector3d a = V_.row(F_(face, 0)), b = V_.row(F_(face, 1)), c = V_.row(F_(face, 2));
+  return (b - a).cross(c - a).normalized();
+}
+
+/// Angle-weighted, so that the sign of the distance is right beside the vertex.
+Vector3d Obstacle::vertex_normal(int vertex) const {
+  Vector3d sum = Vector3d::Zero();
+  const auto v = static_cast<std::size_t>(vertex);
+  for (int i = ring_start_[v]; i < ring_start_[v + 1]; ++i) {
+    const int f = ring_[static_cast<std::size_t>(i)];
+    int k = 0;
+    while (F_(f, k) != vertex) ++k;
+    const Vector3d p = V_.row(vertex);
+    const Vector3d a = V_.row(F_(f, (k + 1) % 3)).transpose() - p, b = V_.row(F_(f, (k + 2) % 3)).transpose() - p;
+    const Vector3d n = a.cross(b);
+    const double length = n.norm();
+    if (length > 0) sum += std::atan2(length, a.dot(b)) / length * n;
   }
-  vertex_normals_.rowwise().normalize();
+  return sum.normalized();
 }
 
 void Obstacle::place(const Eigen::Isometry3d& transform) {
@@ -81,31 +96,36 @@ void Obstacle::follow(const PositionView& positions) {
   if (longest2 == 0) return;
   travel_ += std::sqrt(longest2);
   query_.refit(V_);
-  update_normals();
 }
 
-std::optional<SignedContact> Obstacle::closest(const Vector3d& point, double reach) const {
+std::optional<SignedContact> Obstacle::closest(const Vector3d& point, double reach, int hint) const {
   const Vector3d p = is_rigid() ? Vector3d(transform_.inverse() * point) : point;
+  if (hint >= 0 && hint < F_.rows()) {
+    const Vector3d a = V_.row(F_(hint, 0)), b = V_.row(F_(hint, 1)), c = V_.row(F_(hint, 2));
+    const Vector3d w = closest_barycentric(p, a, b, c);
+    // A little more than the distance to that triangle, so that the search finds it or a nearer one.
+    reach = std::min(reach, (1 + 1e-9) * (p - w[0] * a - w[1] * b - w[2] * c).norm() + 1e-12);
+  }
   const std::optional<SurfacePoint> near = query_.closest_point_within(p, reach);
   if (!near) return std::nullopt;
   const int f = near->triangle;
   SignedContact contact;
   contact.triangle = f;
   contact.barycentric = near->barycentric;
-  Vector3d normal = face_normals_.row(f);
+  Vector3d normal = face_normal(f);
   const int zeros = static_cast<int>((near->barycentric.array() == 0).count());
   if (zeros == 1) {
     for (int k = 0; k < 3; ++k) {
       if (near->barycentric[(k + 2) % 3] != 0) continue;
       const int across = neighbours_(f, k);
       contact.on_rim = across < 0;
-      if (across >= 0) normal = (normal + face_normals_.row(across).transpose()).normalized();
+      if (across >= 0) normal = (normal + face_normal(across)).normalized();
     }
   } else if (zeros == 2) {
     Eigen::Index k = 0;
     near->barycentric.maxCoeff(&k);
     contact.on_rim = on_rim_[static_cast<std::size_t>(F_(f, k))] != 0;
-    normal = vertex_normals_.row(F_(f, k));
+    normal = vertex_normal(F_(f, k));
   }
   const Vector3d r = p - near->position;
   const double distance = std::sqrt(near->squared_distance);
@@ -126,7 +146,7 @@ bool Obstacle::has_vertex(int vertex) const {
 Vector3d Obstacle::normal_at(int vertex) const {
   const auto found = std::lower_bound(local_.begin(), local_.end(), std::make_pair(vertex, -1));
   if (found == local_.end() || found->first != vertex) return Vector3d::Zero();
-  return vertex_normals_.row(found->second);
+  return vertex_normal(found->second);
 }
 
 }  // namespace phiz

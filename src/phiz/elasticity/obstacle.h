@@ -37,7 +37,8 @@ class Obstacle {
 
   /// The closest point within `reach`. The sign comes from the pseudo-normal of the closest face, edge or vertex
   /// (Baerentzen and Aanaes 2005).
-  std::optional<SignedContact> closest(const Vector3d& point, double reach) const;
+  /// `hint`: a triangle that is likely to be near, or -1; it only makes the search faster.
+  std::optional<SignedContact> closest(const Vector3d& point, double reach, int hint = -1) const;
 
   bool has_vertex(int vertex) const;
   /// Outward normal at body vertex `vertex`, zero if it is not one of the obstacle's.
@@ -48,7 +49,8 @@ class Obstacle {
 
  private:
   Obstacle(const MatrixX3d& V, const MatrixX3i& F, std::vector<int> vertices);
-  void update_normals();
+  Vector3d face_normal(int face) const;
+  Vector3d vertex_normal(int vertex) const;
 
   MatrixX3d V_;
   MatrixX3i F_;
@@ -57,7 +59,7 @@ class Obstacle {
   std::vector<int> vertices_;
   std::vector<std::pair<int, int>> local_;  ///< (body vertex, own vertex), sorted
   SurfaceQuery query_;
-  MatrixX3d face_normals_, vertex_normals_;
+  std::vector<int> ring_start_, ring_;  ///< triangles round each vertex
   Eigen::Isometry3d transform_ = Eigen::Isometry3d::Identity();
   Vector3d low_, high_;
   double travel_ = 0;

@@ -4,15 +4,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <utility>
 
 #include "phiz/core/error.h"
 #include "phiz/core/parallel.h"
-#include "phiz/elasticity/contact.h"
 #include "phiz/face/blend.h"
 #include "phiz/face/flesh.h"
+#include "phiz/face/head_contacts.h"
 #include "phiz/face/take.h"
 #include "phiz/geometry/operators.h"
 
@@ -25,49 +24,6 @@ using Clock = std::chrono::steady_clock;
 double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
-
-/// Contact pairs of a head, and the obstacles that move with the jaw.
-struct HeadContacts {
-  HeadContacts(const HeadTemplate& head, const ContactOptions& options) : scene(head.volume.V.rows(), options) {
-    std::map<std::string, int> patches, rigid;
-    const auto region = [&](const std::string& name) -> const ContactRegion* {
-      for (const ContactRegion& r : head.contact_regions)
-        if (r.name == name) return &r;
-      return nullptr;
-    };
-    const auto patch = [&](const ContactRegion& r) {
-      const auto found = patches.find(r.name);
-      return found != patches.end() ? found->second : patches[r.name] = scene.add_patch(head.volume.V, r.triangles);
-    };
-    for (const ContactPair& pair : head.contact_pairs) {
-      const ContactRegion* moving = region(pair.vertices);
-      if (moving == nullptr) reject(head.name, "contact pair names the unknown region " + pair.vertices);
-      const ContactRegion* other = region(pair.obstacle);
-      int obstacle = -1;
-      if (other != nullptr) {
-        obstacle = patch(*other);
-      } else if (const Part* part = find_part(head, pair.obstacle); part != nullptr) {
-        const auto found = rigid.find(part->name);
-        if (found != rigid.end()) {
-          obstacle = found->second;
-        } else {
-          obstacle = rigid[part->name] = scene.add_rigid(part->mesh);
-          if (part->carrier == Carrier::mandible) on_jaw.push_back(obstacle);
-        }
-      } else {
-        reject(head.name, "contact pair names the unknown obstacle " + pair.obstacle);
-      }
-      scene.add_pair(moving->vertices, obstacle, moving->triangles.rows() > 0 ? patch(*moving) : -1, head.volume.V);
-    }
-  }
-
-  void place_jaw(const Eigen::Isometry3d& jaw) {
-    for (const int obstacle : on_jaw) scene.place(obstacle, jaw);
-  }
-
-  ContactScene scene;
-  std::vector<int> on_jaw;
-};
 
 /// Values as a take keeps them (32-bit), so that a resumed run starts from the same bits.
 MatrixX3d as_stored(const MatrixX3d& x) {

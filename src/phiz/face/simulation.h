@@ -23,7 +23,7 @@ struct SimulationOptions {
   }
   bool contact = true;
   bool dynamic = false;
-  TermWeights weights{1.0, 1.0, 20.0};  ///< target, shape (elasticity about the target's stretch), volume
+  TermWeights weights{1.0, 1.0, 10.0};  ///< target, shape (elasticity about the target's stretch), volume
   double stiffness = 3000;              ///< shear scale E0, pascals
   double density = 1000;                ///< kg/m^3
   double time_step = 1.0 / 60;          ///< of dynamics, seconds; step() divides its dt into such steps

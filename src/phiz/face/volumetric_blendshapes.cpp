@@ -210,13 +210,11 @@ FaceModel build_volumetric_blendshapes(HeadTemplate head, const BlendshapeOption
   FaceModel model;
   {
     ShapeSolver solver(head, options);
-    Progress progress("volumetric blendshapes", static_cast<std::ptrdiff_t>(head.expressions.size()));
     for (const Expression& expression : head.expressions) {
       if (interrupted()) fail("stopped while building volumetric blendshapes");
       SolveStatistics statistics;
       model.shapes.push_back(solver.solve(expression, statistics));
       if (options.report) options.report(expression.name, statistics);
-      progress.advance();
     }
   }
   model.head = std::move(head);

@@ -167,9 +167,10 @@ HWY_INLINE void ClosestRotation3(D d, const V* A, V* R) {
 }
 
 /// P = closest matrix of determinant 1: E = P - A stays parallel to the cofactors of P while det P = 1 is solved by
-/// successive linearisation; lanes far from determinant 1 go through svd3.
+/// successive linearisation, until the squared change of a step falls below `least_change2`; lanes far from determinant
+/// 1 go through svd3.
 template <class D, class V = hwy::HWY_NAMESPACE::Vec<D>>
-HWY_INLINE void ClosestUnimodular3(D d, const V* A, V* P) {
+HWY_INLINE void ClosestUnimodular3(D d, const V* A, V* P, double least_change2 = 1e-26) {
   namespace hn = hwy::HWY_NAMESPACE;
   const V one = hn::Set(d, 1.0);
   V C[9], E[9];
@@ -192,7 +193,7 @@ HWY_INLINE void ClosestUnimodular3(D d, const V* A, V* P) {
       E[k] = next;
       P[k] = hn::Add(A[k], next);
     }
-    const auto settled = hn::Or(bad, hn::Lt(change, hn::Set(d, 1e-26)));
+    const auto settled = hn::Or(bad, hn::Lt(change, hn::Set(d, least_change2)));
     done = hn::AllTrue(d, settled);
     if (i == 23) bad = hn::Or(bad, hn::Not(settled));
   }
