@@ -82,14 +82,13 @@ double midface(const Vector3d& p) {
   const double core = rounded_box(p, {0, 4, 36}, {25, 31, 24}, 13);
   const double sphenoid = rounded_box(p, {0, 12, 8}, {28, 26, 26}, 12);
   const double infraorbital = ellipsoid(p, {26, 2, 50}, {15, 15, 12});
-  const double nasal = capsule(p, {1.5, 37, 61}, {1.5, 21, 74}, 5.5, 3.6);
+  const double nasal = capsule(p, {0, 37, 58}, {0, 21, 68}, 9, 7.5);
   const double frontal_process = capsule(p, {9.5, 32, 58}, {14, 4, 61}, 4.5, 4.5);
-  const double beside_nose = capsule(p, {5, 30, 63}, {8, 14, 67.5}, 4.2, 3);
   const double spine = capsule(p, {0, -9.5, 64}, {0, -7.5, 75.5}, 4, 1.2);
   const double pterygoid = capsule(p, {16, -2, 15}, {17, -24, 15}, 6, 3.5);
   double f = blend(core, sphenoid, 12);
   f = blend(f, infraorbital, 10);
-  f = blend(f, blend(nasal, beside_nose, 6), 6);
+  f = blend(f, nasal, 8);
   f = blend(f, frontal_process, 6);
   f = blend(f, spine, 5);
   return blend(f, pterygoid, 6);
@@ -271,7 +270,7 @@ double reference_skull_struts(const Vector3d& p) {
   const Vector3d q = left_mm(p);
   const double rim = implicit::bar(q, orbital_rim, {1, 1, 1}) + 1.2;
   const double arch = implicit::bar(q, zygomatic_arch, arch_section) + 0.3;
-  const double nose = capsule(q, {1, 37, 60}, {1, 22, 71.5}, 4, 2.2);
+  const double nose = capsule(q, {0, 37, 58}, {0, 22, 67.5}, 6.5, 4.8);
   return 1e-3 * carve(std::min({rim, arch, nose}), orbit(q) - 0.3, 1);
 }
 

@@ -143,7 +143,8 @@ Fields clipped_fields(const ReferenceWarp& warp, const RoomQuery& room, const Bo
   const auto clip = [&room](double f, double struts, const Vector3d& p) {
     if (f > far || f < -deep) return f;
     const Room here = room(p);
-    return std::min(implicit::intersect(f, -here.usual, soft), implicit::intersect(struts, -here.least, 0.5 * soft));
+    return implicit::blend(implicit::intersect(f, -here.usual, soft),
+                           implicit::intersect(struts, -here.least, 0.5 * soft), 1.5 * soft);
   };
   return {[&warp, clip, &options, detailed](const Vector3d& p) {
             const Vector3d q = warp(p);
