@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <filesystem>
 
 #include "io/expect_error.h"
@@ -196,6 +198,22 @@ TEST(Container, frames_that_do_not_fit_are_refused) {
   frame.volume.setZero(4, 3);
   message_of([&] { writer.append(frame); }, ErrorKind::failure);
   EXPECT_EQ(writer.frames(), 1);
+}
+
+TEST(Container, a_full_disk_is_an_error_and_the_next_file_is_good) {
+  const TemporaryFolder folder;
+  const Take take = sample_take(40, 30);
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  rlimit tight = before;
+  tight.rlim_cur = 60000;
+  setrlimit(RLIMIT_FSIZE, &tight);
+  message_of([&] { save(folder.file("full.phiz"), take); }, ErrorKind::failure);
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_FALSE(std::filesystem::exists(folder.file("full.phiz")));
+  save(folder.file("good.phiz"), take);
+  expect_same(take, load_take(folder.file("good.phiz")));
 }
 
 TEST(Container, damage_and_other_files_are_noticed) {
