@@ -17,8 +17,7 @@ if(CCACHE_PROGRAM)
 endif()
 
 add_library(phiz_flags INTERFACE)
-target_compile_options(phiz_flags INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Wno-unknown-pragmas
-                                         -Wno-missing-field-initializers)  # designated initialisers leave defaults on purpose
+target_compile_options(phiz_flags INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Wno-unknown-pragmas)
 if(PHIZ_WERROR)
   target_compile_options(phiz_flags INTERFACE -Werror)
 endif()
