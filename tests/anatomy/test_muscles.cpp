@@ -39,7 +39,10 @@ TEST(Muscles, AreMirrorImages) {
 }
 
 TEST(Muscles, FillAShareOfTheFleshWithUnitFibres) {
-  const HeadTemplate head = build_builtin_head({.size = HeadSize::preview, .expressions = false});
+  BuiltinOptions options;
+  options.size = HeadSize::preview;
+  options.expressions = false;
+  const HeadTemplate head = build_builtin_head(options);
   const VectorXd volume = tet_volumes(head.volume.V, head.volume.T);
   VectorXd filled = VectorXd::Zero(volume.size());
   for (const Muscle& m : head.muscles) {
