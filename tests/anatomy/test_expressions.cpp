@@ -16,7 +16,7 @@ namespace phiz {
 namespace {
 
 const HeadTemplate& head() {
-  static const HeadTemplate built = build_builtin_head({.size = HeadSize::standard});
+  static const HeadTemplate built = build_builtin_head(BuiltinOptions{});
   return built;
 }
 
