@@ -68,7 +68,8 @@ SparseMatrixd stored_sparse(const Hdf5Group& group, Eigen::Index expected_rows, 
   }
   if (start[0] != 0 || start[rows] != column.size()) reject(group.where("row_start"), "does not cover all values");
   for (int r = 0; r < rows; ++r) {
-    if (start[r] > start[r + 1]) reject(group.where("row_start"), fmt::format("row {} ends before it begins", r));
+    if (start[r] > start[r + 1] || start[r + 1] > column.size())
+      reject(group.where("row_start"), fmt::format("row {} is out of order", r));
     for (int k = start[r]; k < start[r + 1]; ++k) {
       const int least = k > start[r] ? column[k - 1] + 1 : 0;
       if (column[k] < least || column[k] >= cols) {
