@@ -218,14 +218,16 @@ class TakeScene {
 
   void animate_nodes(int head) {
     if (take_.frames.empty()) return;
-    animate_translation(head, [](const TakeFrame& f) { return f.head.translation(); });
-    animate_rotation(head, [](const TakeFrame& f) { return f.head.linear(); });
+    animate_translation(head, [](const TakeFrame& f) -> Vector3d { return f.head.translation(); });
+    animate_rotation(head, [](const TakeFrame& f) -> Matrix3d { return f.head.linear(); });
     for (const auto& [carrier, place] : carriers_) {
       if (carrier == Carrier::mandible) {
         // Positions below the jaw node are relative to the joint's centre.
         const Vector3d centre = place.centre;
-        animate_translation(place.node, [&](const TakeFrame& f) { return jaw_transform(take_.joint, f.jaw) * centre; });
-        animate_rotation(place.node, [&](const TakeFrame& f) { return jaw_transform(take_.joint, f.jaw).linear(); });
+        animate_translation(place.node,
+                            [&](const TakeFrame& f) -> Vector3d { return jaw_transform(take_.joint, f.jaw) * centre; });
+        animate_rotation(place.node,
+                         [&](const TakeFrame& f) -> Matrix3d { return jaw_transform(take_.joint, f.jaw).linear(); });
       } else if (carrier == Carrier::left_eye) {
         animate_rotation(place.node, [](const TakeFrame& f) { return f.left_eye; });
       } else if (carrier == Carrier::right_eye) {
