@@ -166,6 +166,7 @@ TEST(Skin, ConnectivityAndTextureMapAreTheSameForEverybody) {
   EXPECT_EQ(other.cage.faces, mean_person().cage.faces);
   EXPECT_EQ(other.cage.face_uvs, mean_person().cage.face_uvs);
   EXPECT_EQ((other.cage.UV - mean_person().cage.UV).norm(), 0);
+  EXPECT_EQ(refine(other, 1).mesh.F, refine(mean_person(), 1).mesh.F);
 }
 
 TEST(Skin, MouthIsClosedButTheLipsDoNotTouch) {

@@ -164,16 +164,17 @@ VectorXi refine_set(const SparseMatrixd& points, const VectorXi& set) {
   return Eigen::Map<VectorXi>(members.data(), static_cast<Eigen::Index>(members.size()));
 }
 
-/// Cuts each quad along the diagonal that bends the surface less, the first one at a tie within rounding.
-void triangulate(const PolygonMesh& quads, TriangleMesh& mesh) {
+/// Cuts each quad along the diagonal that bends the surface less, the first one at a tie within rounding. `form` gives
+/// the positions to judge by: those of the mean person, so that everybody has the same triangles.
+void triangulate(const PolygonMesh& quads, const MatrixX3d& form, TriangleMesh& mesh) {
   const Eigen::Index n = static_cast<Eigen::Index>(quads.faces.size());
   mesh.V = quads.V;
   mesh.UV = quads.UV;
   mesh.F.resize(2 * n, 3);
   mesh.FUV.resize(2 * n, 3);
   const auto fold = [&](const std::vector<int>& q, int k) {  // cosine between the halves cut from corner k
-    const Vector3d a = quads.V.row(q[k]), b = quads.V.row(q[(k + 1) % 4]), c = quads.V.row(q[(k + 2) % 4]),
-                   d = quads.V.row(q[(k + 3) % 4]);
+    const auto at = [&](int step) -> Vector3d { return form.row(q[(k + step) % 4]); };
+    const Vector3d a = at(0), b = at(1), c = at(2), d = at(3);
     return (b - a).cross(c - a).normalized().dot((c - a).cross(d - a).normalized());
   };
   for (Eigen::Index f = 0; f < n; ++f) {
@@ -203,7 +204,8 @@ RefinedSkin refine(const SkinSurface& skin, int level) {
   refined.quads.faces = std::move(fine.faces);
   refined.quads.UV = std::move(fine.UV);
   refined.quads.face_uvs = std::move(fine.face_uvs);
-  triangulate(refined.quads, refined.mesh);
+  static const MatrixX3d mean = build_skin({}, {}).cage.V;
+  triangulate(refined.quads, refined.from_cage * mean, refined.mesh);
   for (const auto& [name, members] : skin.regions) {
     if (name.starts_with("loop:")) {
       const std::vector<int> path = subdivide_path(skin.cage, level, {members.begin(), members.end()});

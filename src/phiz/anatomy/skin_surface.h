@@ -36,7 +36,7 @@ SkinSurface build_skin(const Proportions& proportions, const IdentityParameters&
 /// The skin at one level of fineness. Every vertex lies on the limit surface, and vertex i of a level is vertex i of
 /// every finer level, so landmarks keep their index.
 struct RefinedSkin {
-  TriangleMesh mesh;        ///< quads split along the better diagonal, with UVs
+  TriangleMesh mesh;        ///< quads split along the diagonal that is better on the mean person, with UVs
   PolygonMesh quads;        ///< the same vertices, with UVs
   SparseMatrixd from_cage;  ///< n x cage vertices: mesh.V = from_cage * cage.V; rows sum to 1
   SkinRegions regions;      ///< rows of mesh.V; loops gain the vertices on their edges
