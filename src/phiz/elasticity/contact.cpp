@@ -27,6 +27,7 @@ struct Watch {
 };
 
 constexpr double search_reach = 2.5e-3;  ///< beyond the margin; a longer search is seldom of use for the next call
+constexpr double hollow_reach = 3e-4;    ///< how near a second face must be to hold a vertex in a hollow, metres
 constexpr double same_side = 0.5;        ///< cosine above which a penetrating vertex faces as its obstacle does
 
 }  // namespace
@@ -122,7 +123,7 @@ std::vector<ContactRow> ContactScene::detect(const PositionView& positions) {
   for (Obstacle& obstacle : s.obstacles)
     if (!obstacle.is_rigid()) obstacle.follow(positions);
   const double margin = s.options.margin;
-  std::vector<std::optional<SignedContact>> found(s.watches.size());
+  std::vector<std::vector<SignedContact>> found(s.watches.size());
   parallel_for(
       static_cast<std::ptrdiff_t>(s.watches.size()),
       [&](std::ptrdiff_t i) {
@@ -133,7 +134,13 @@ std::vector<ContactRow> ContactScene::detect(const PositionView& positions) {
         const Obstacle& obstacle = s.obstacles[static_cast<std::size_t>(watch.obstacle)];
         const std::optional<SignedContact> nearest = obstacle.closest(p, reach, watch.hint);
         watch.hint = nearest ? nearest->triangle : -1;
-        if (s.is_contact(watch, nearest) && nearest->gap <= margin) found[static_cast<std::size_t>(i)] = nearest;
+        if (s.is_contact(watch, nearest) && nearest->gap <= margin) {
+          std::vector<SignedContact>& contacts = found[static_cast<std::size_t>(i)];
+          contacts.push_back(*nearest);
+          if (nearest->gap < hollow_reach)
+            for (const SignedContact& second : obstacle.beside(p, *nearest, hollow_reach + std::abs(nearest->gap)))
+              contacts.push_back(second);
+        }
         // The far side of an obstacle and the rim of a patch are no contact, yet near: look again.
         watch.clear = nearest ? std::abs(nearest->gap) : reach;
         watch.known = watch.clear > margin && (!nearest || nearest->gap > 0);
@@ -144,23 +151,25 @@ std::vector<ContactRow> ContactScene::detect(const PositionView& positions) {
 
   std::vector<ContactRow> rows;
   for (std::size_t i = 0; i < s.watches.size(); ++i) {
-    if (!found[i]) continue;
     const Obstacle& obstacle = s.obstacles[static_cast<std::size_t>(s.watches[i].obstacle)];
-    ContactRow row;
-    row.vertices[0] = s.watches[i].vertex;
-    row.normal = found[i]->normal;
-    row.gap = found[i]->gap;
-    row.pair = s.watches[i].pair;
-    if (!obstacle.is_rigid())
-      for (int k = 0; k < 3; ++k) {
-        const double b = found[i]->barycentric[k];
-        if (b == 0) continue;
-        row.vertices[row.count] =
-            obstacle.vertices()[static_cast<std::size_t>(obstacle.triangles()(found[i]->triangle, k))];
-        row.coefficients[row.count] = -b;
-        ++row.count;
-      }
-    rows.push_back(row);
+    for (const SignedContact& contact : found[i]) {
+      ContactRow row;
+      row.vertices[0] = s.watches[i].vertex;
+      row.normal = contact.normal;
+      row.gap = contact.gap;
+      row.pair = s.watches[i].pair;
+      row.face = contact.triangle;
+      if (!obstacle.is_rigid())
+        for (int k = 0; k < 3; ++k) {
+          const double b = contact.barycentric[k];
+          if (b == 0) continue;
+          row.vertices[row.count] =
+              obstacle.vertices()[static_cast<std::size_t>(obstacle.triangles()(contact.triangle, k))];
+          row.coefficients[row.count] = -b;
+          ++row.count;
+        }
+      rows.push_back(row);
+    }
   }
   return rows;
 }

@@ -36,6 +36,7 @@ struct ContactRow {
   Vector3d normal = Vector3d::UnitZ();  ///< outward normal of the obstacle
   double gap = 0;                       ///< signed distance, metres, negative when penetrating
   int pair = -1;
+  int face = -1;  ///< triangle of the obstacle
 };
 
 class ContactScene {
@@ -60,8 +61,8 @@ class ContactScene {
   /// Vertices that may take part in a row.
   VectorXi candidates() const;
 
-  /// Rows of all pairs whose gap is below the margin, in a fixed order. Skips vertices that cannot have come near since
-  /// the last call; what it returns does not depend on earlier calls.
+  /// Rows of all pairs whose gap is below the margin, in a fixed order; more than one for a vertex in a hollow. Skips
+  /// vertices that cannot have come near since the last call; what it returns does not depend on earlier calls.
   std::vector<ContactRow> detect(const PositionView& positions);
 
   /// Deepest penetration over all pairs, metres, >= 0, of every vertex that can have come near: a

@@ -15,6 +15,9 @@ namespace {
 /// Rows whose gap would stay above this after the unconstrained step are left out of the multiplier problem, metres.
 constexpr double idle_gap = 2e-4;
 
+/// Iterations before steps are relaxed.
+constexpr int settle = 5;
+
 /// See run().
 constexpr double plain_shortfall = 10;
 
@@ -35,7 +38,8 @@ double row_product(const ContactRow& row, const double* v) {
 
 double deepest(const ContactRows& contact) {
   double depth = 0;
-  for (const ContactRow& row : contact.rows) depth = std::max(depth, -row.gap);
+  for (std::size_t i = 0; i < contact.rows.size(); ++i)
+    if (i == 0 || contact.vertex[i] != contact.vertex[i - 1]) depth = std::max(depth, -contact.rows[i].gap);
   return depth;
 }
 
@@ -53,7 +57,7 @@ ContactRows Descent::detect(const double* x) {
   ContactRows out;
   if (contacts_ == nullptr) return out;
   for (ContactRow row : contacts_->detect({x, 4, system_.row_of.data()})) {
-    const std::int64_t key = (static_cast<std::int64_t>(row.pair) << 32) + row.vertices[0];
+    const std::int64_t vertex = (static_cast<std::int64_t>(row.pair) << 32) + row.vertices[0];
     int kept = 0;
     for (int k = 0; k < row.count; ++k) {
       const int r = system_.row_of[row.vertices[k]];
@@ -64,7 +68,9 @@ ContactRows Descent::detect(const double* x) {
     row.count = kept;
     if (kept == 0) continue;
     out.rows.push_back(row);
-    out.key.push_back(key);
+    const bool first = out.vertex.empty() || out.vertex.back() != vertex;
+    out.vertex.push_back(vertex);
+    out.key.push_back(2 * vertex + (first ? 0 : 1));
   }
   return out;
 }
@@ -170,6 +176,9 @@ SolveStatistics Descent::run(double* x) {
   AlignedVector g = allocate(), next_g = allocate(), v = allocate(), next_v = allocate(), p = allocate();
   AlignedVector trial = hwy::AllocateAligned<double>(static_cast<std::size_t>(4 * system_.vertices));
   std::copy_n(x, 4 * system_.vertices, trial.get());
+  AlignedVector last_p = allocate();
+  std::fill_n(last_p.get(), size, 0.0);
+  double last_length2 = 0, relaxation = 1;
   SolveStatistics statistics;
   double energy = system_.evaluate(x, g.get(), system_.free);
   std::copy_n(g.get(), size, v.get());
@@ -182,9 +191,19 @@ SolveStatistics Descent::run(double* x) {
     const bool plain = options_.history > 0 && inverse_.pairs() == 0;
     const double contact_work = lambda_.dot(row_motion_);
     const double decrease = contact_work - dot(g.get(), p.get(), size);
-    double alpha = 1;
     const double reach = longest_move(p.get(), system_.free);
-    if (reach > options_.longest_step) alpha = options_.longest_step / reach;
+    // Where contacts switch from face to face two states can call each other for ever; steps that turn back are
+    // shortened.
+    const double back = dot(p.get(), last_p.get(), size);
+    const double length2 = dot(p.get(), p.get(), size);
+    if (statistics.iterations > settle && back < -0.3 * std::sqrt(length2 * last_length2))
+      relaxation = std::max(0.125, 0.6 * relaxation);
+    else
+      relaxation = std::min(1.0, 1.3 * relaxation);
+    std::copy_n(p.get(), size, last_p.get());
+    last_length2 = length2;
+    double alpha = contact.rows.empty() ? 1.0 : relaxation;
+    if (alpha * reach > options_.longest_step) alpha = options_.longest_step / reach;
 
     // Armijo's rule on the energy minus the work of the contact forces, which falls along p also out of penetrations. A
     // plain local/global step (no pairs) fulfils it by construction: the factor bounds the energy from above.
@@ -212,7 +231,7 @@ SolveStatistics Descent::run(double* x) {
     }
     std::copy_n(trial.get(), size, x);
     energy = next_energy;
-    statistics.last_step = alpha * reach;
+    statistics.last_step = reach * std::min(1.0, alpha / relaxation);
     statistics.contacts = static_cast<int>((lambda_.array() > 0).count());
     const double force = contact_residual(contact, next_g.get());
     contact = detect(x);

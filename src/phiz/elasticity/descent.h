@@ -12,8 +12,9 @@ namespace phiz {
 
 /// The contact rows of one iteration in solver rows, with the columns that meet the quasi-Newton pairs.
 struct ContactRows {
-  std::vector<ContactRow> rows;   ///< vertices replaced by solver rows, fixed ones dropped
-  std::vector<std::int64_t> key;  ///< identifies pair and vertex, for warm starts
+  std::vector<ContactRow> rows;      ///< vertices replaced by solver rows, fixed ones dropped
+  std::vector<std::int64_t> vertex;  ///< identifies pair and vertex
+  std::vector<std::int64_t> key;     ///< and whether it is the row of the closest face, for warm starts
 };
 
 /// One accelerated solve.

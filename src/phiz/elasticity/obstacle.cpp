@@ -139,6 +139,53 @@ std::optional<SignedContact> Obstacle::closest(const Vector3d& point, double rea
   return contact;
 }
 
+std::vector<SignedContact> Obstacle::beside(const Vector3d& point, const SignedContact& closest, double reach) const {
+  constexpr double same_plane = 0.97, other_side = -0.2;
+  constexpr std::size_t most = 2;
+  const Vector3d p = is_rigid() ? Vector3d(transform_.inverse() * point) : point;
+  const auto local = [&](const Vector3d& n) { return is_rigid() ? Vector3d(transform_.linear().transpose() * n) : n; };
+  struct Candidate {
+    double distance;
+    SignedContact contact;
+    Vector3d middle, at;
+  };
+  std::vector<Candidate> candidates;
+  const Vector3d first_normal = local(closest.normal);
+  for (const int f : query_.triangles_in_box(p.array() - reach, p.array() + reach)) {
+    if (f == closest.triangle) continue;
+    const Vector3d n = face_normal(f);
+    const double turn = n.dot(first_normal);
+    if (turn > same_plane || turn < other_side) continue;
+    const Vector3d a = V_.row(F_(f, 0)), b = V_.row(F_(f, 1)), c = V_.row(F_(f, 2));
+    const Vector3d w = closest_barycentric(p, a, b, c);
+    const Vector3d at = w[0] * a + w[1] * b + w[2] * c;
+    const double distance = (p - at).norm();
+    if (distance > reach) continue;
+    SignedContact contact;
+    contact.triangle = f;
+    contact.barycentric = w;
+    contact.normal = n;
+    contact.gap = n.dot(p - at);
+    candidates.push_back({distance, contact, (a + b + c) / 3, at});
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& x, const Candidate& y) { return x.distance < y.distance; });
+  std::vector<SignedContact> kept;
+  // A plane is given by a point and a normal; the closest point lies `gap` below p along the first normal.
+  std::vector<std::pair<Vector3d, Vector3d>> planes{{p - closest.gap * first_normal, first_normal}};
+  for (const Candidate& candidate : candidates) {
+    bool stands_up = true;
+    for (const auto& [at, n] : planes)
+      stands_up = stands_up && n.dot(candidate.middle - at) > 0 && n.dot(candidate.contact.normal) < same_plane;
+    if (!stands_up) continue;
+    planes.emplace_back(candidate.at, candidate.contact.normal);
+    kept.push_back(candidate.contact);
+    if (is_rigid()) kept.back().normal = transform_.linear() * kept.back().normal;
+    if (kept.size() == most) break;
+  }
+  return kept;
+}
+
 bool Obstacle::has_vertex(int vertex) const {
   return std::binary_search(vertices_.begin(), vertices_.end(), vertex);
 }

@@ -40,6 +40,10 @@ class Obstacle {
   /// `hint`: a triangle that is likely to be near, or -1; it only makes the search faster.
   std::optional<SignedContact> closest(const Vector3d& point, double reach, int hint = -1) const;
 
+  /// Faces beside the closest one that stand up from its plane within `reach` of the point: in the hollow between two
+  /// faces a vertex must stay outside of both. At most two, nearest first; the gap is that to the face's plane.
+  std::vector<SignedContact> beside(const Vector3d& point, const SignedContact& closest, double reach) const;
+
   bool has_vertex(int vertex) const;
   /// Outward normal at body vertex `vertex`, zero if it is not one of the obstacle's.
   Vector3d normal_at(int vertex) const;

@@ -26,6 +26,12 @@ Matrix3d symmetric(const Eigen::Matrix<double, 1, 6>& s) {
 
 }  // namespace
 
+double excused_volume(double det) {
+  constexpr double kept = 0.15;
+  const double log = std::log(std::max(det, 0.1));
+  return std::copysign(std::max(0.0, std::abs(log) - kept), log);
+}
+
 JawPose blend_jaw(const FaceModel& model, const VectorXd& weights) {
   JawPose pose = JawPose::Zero();
   for (std::size_t m = 0; m < model.shapes.size(); ++m)
@@ -108,7 +114,7 @@ TargetBlender::TargetBlender(const FaceModel& model, const VectorXi& soft, const
       for (int k = 0; k < 3; ++k) values[k * 8] = shape.log_rotation(i, k);
       for (int k = 0; k < 6; ++k) values[(3 + k) * 8] = shape.stretch(i, k);
       const double det = (Matrix3d::Identity() + symmetric(shape.stretch.row(i).cast<double>())).determinant();
-      values[72] = static_cast<float>(std::log(std::max(det, 0.1)) / 3);
+      values[72] = static_cast<float>(excused_volume(det) / 3);
     }
     for (std::size_t b = 0; b < touched[m].size(); ++b) next[b] += touched[m][b];
   }

@@ -25,6 +25,11 @@ Matrix3d linear_blend(const MatrixX3d& log_rotations, const Eigen::Matrix<double
 /// exp of a rotation vector.
 Matrix3d rotation_exponential(const Vector3d& v);
 
+/// Logarithm of the change of volume that the volume term excuses in a shape whose gradient has determinant `det`: none
+/// within about 15 %, which the solver corrects, and the excess beyond, where a sculpt folds or crushes flesh and
+/// insisting on its volume would only make it buckle.
+double excused_volume(double det);
+
 /// All tets at once: the shapes rearranged by blocks of eight tets in the order of an ElementBlocks.
 class TargetBlender {
  public:
@@ -34,9 +39,8 @@ class TargetBlender {
   TargetBlender(TargetBlender&&) noexcept;
   TargetBlender& operator=(TargetBlender&&) noexcept;
 
-  /// Writes the targets of all tets for weights per shape: gradient, stretch, and the volume goal exp(sum w_m log det
-  /// M_m), which is 1 where the shapes keep volume and the volume of the sculpted shape where they do not. Weights
-  /// below 1e-5 count as none.
+  /// Writes the targets of all tets for weights per shape: gradient, stretch, and the volume goal exp(sum w_m
+  /// excused_m). Weights below 1e-5 count as none.
   void blend(const VectorXd& weights, ElementBlocks& elements) const;
 
  private:

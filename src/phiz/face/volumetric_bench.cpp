@@ -50,7 +50,7 @@ std::vector<TetTarget> blended_targets(const FaceModel& model, const VectorXi& s
       const auto u = static_cast<std::size_t>(t);
       logs[u] += w * shape.log_rotation.row(i).transpose().cast<double>();
       stretches[u] += w * S;
-      volumes[u] += w * std::log(std::max(0.1, (Matrix3d::Identity() + S).determinant()));
+      volumes[u] += w * excused_volume((Matrix3d::Identity() + S).determinant());
     }
   }
   std::vector<TetTarget> targets(count);
