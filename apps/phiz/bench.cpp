@@ -129,6 +129,7 @@ void run_volumetric(const BenchArguments& arguments) {
 
 void add_bench(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("bench", "Measure speed and accuracy");
+  verb->footer("Example:\n  phiz bench volumetric --frames 240 --json bench.json");
   verb->require_subcommand(1);
   CLI::App* volumetric = verb->add_subcommand(
       "volumetric", "The animation solve with contact, and its distance from an independent solver");
