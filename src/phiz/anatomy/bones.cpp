@@ -2,6 +2,7 @@
 #include "phiz/anatomy/bones.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -10,6 +11,7 @@
 #include "phiz/anatomy/bone_shapes.h"
 #include "phiz/anatomy/flesh_thickness.h"
 #include "phiz/anatomy/implicit.h"
+#include "phiz/anatomy/loft.h"
 #include "phiz/anatomy/untangle.h"
 #include "phiz/core/error.h"
 #include "phiz/core/parallel.h"
@@ -201,6 +203,33 @@ void keep_clear(TriangleMesh& bone, const TriangleMesh& skin, double least) {
   }
 }
 
+/// Long triangles cut corners at the joint: moves the mandible away from the skull until it keeps about `gap` and no
+/// triangles cross, withdrawing into itself where it must.
+void separate(TriangleMesh& mandible, const TriangleMesh& skull, double gap) {
+  constexpr double step = 0.0005;
+  TriangleMesh around = skull;
+  around.F.col(1).swap(around.F.col(2));  // the mandible lies on the inner side of the skull turned inside out
+  keep_clear(mandible, around, gap);
+  const int skull_faces = static_cast<int>(skull.F.rows());
+  const MatrixX3d skull_normals = triangle_normals(skull.V, skull.F);
+  for (int pass = 0; pass < 40; ++pass) {
+    const MatrixX3d normals = vertex_normals(mandible.V, mandible.F);
+    MatrixX3d move = MatrixX3d::Zero(mandible.V.rows(), 3);
+    bool crossing = false;
+    for (const auto& [a, b] : self_intersections(joined(std::array{skull, mandible}))) {
+      if (a >= skull_faces || b < skull_faces) continue;
+      crossing = true;
+      for (int k = 0; k < 3; ++k) {
+        const int v = mandible.F(b - skull_faces, k);
+        move.row(v) = step * (0.5 * skull_normals.row(a) - normals.row(v)).normalized();
+      }
+    }
+    if (!crossing) break;
+    mandible.V += move;
+  }
+  untangle(mandible, 30);
+}
+
 /// The zero set of `field` as the simulation needs it: clear of the skin and free of crossings. Where long triangles
 /// cannot do that, shorter ones are tried.
 TriangleMesh clear_surface(const ScalarField& field, const TriangleMesh& skin, double edge_length, double clearance,
@@ -223,8 +252,10 @@ BoneSurfaces build_bones(const Proportions& proportions, const BoneEnvelope& ski
   const RoomQuery room(proportions, skin, options);
   const Fields fields = clipped_fields(warp, room, options, false);
   const double clearance = 0.8 * options.inner_clearance;
-  return {clear_surface(fields.skull, simulated_skin, options.skull_edge, clearance, "skull"),
-          clear_surface(fields.mandible, simulated_skin, options.mandible_edge, clearance, "mandible")};
+  BoneSurfaces bones{clear_surface(fields.skull, simulated_skin, options.skull_edge, clearance, "skull"),
+                     clear_surface(fields.mandible, simulated_skin, options.mandible_edge, clearance, "mandible")};
+  separate(bones.mandible, bones.skull, 0.6 * options.joint_gap);
+  return bones;
 }
 
 BoneSurfaces build_drawn_bones(const Proportions& proportions, const BoneEnvelope& skin, const BoneOptions& options) {
