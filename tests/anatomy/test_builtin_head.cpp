@@ -141,7 +141,7 @@ TEST(ValidateHead, NamesWhatIsWrong) {
   expect_says(complaint([](HeadTemplate& h) { h.jaw.axis *= 2; }), "jaw");
   expect_says(complaint([](HeadTemplate& h) { h.contact_pairs.push_back({"upperLip", "moon"}); }), "moon");
   expect_says(complaint([](HeadTemplate& h) { h.muscles[2].fraction(0) = 2; }), "muscle");
-  expect_says(complaint([](HeadTemplate& h) { h.skull_landmarks[0].bone_vertex = 0; }), "skull landmark");
+  expect_says(complaint([](HeadTemplate& h) { h.skull_landmarks[0].bone_vertex = -1; }), "skull landmark");
   expect_says(complaint([](HeadTemplate& h) { h.landmarks[4].skin_vertex = -1; }), "landmark");
   expect_says(complaint([](HeadTemplate& h) { h.parts.push_back(h.parts[0]); }), "twice");
   expect_says(complaint([](HeadTemplate& h) {
