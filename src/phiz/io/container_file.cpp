@@ -98,7 +98,11 @@ Hdf5Handle access_properties() {
   return properties;
 }
 
-void silence_hdf5() {
+/// Before the first use: no messages of its own, and no clean-up at the end of the process, in which the library
+/// follows dangling pointers of files that could not be written (full disk). Every file here is closed by its owner.
+void prepare_hdf5() {
+  static const bool first = H5dont_atexit() >= 0;
+  static_cast<void>(first);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
@@ -130,7 +134,7 @@ void ContainerFile::read_root() {
 }
 
 ContainerFile ContainerFile::open(const std::string& path) {
-  silence_hdf5();
+  prepare_hdf5();
   check_first_block(path);
   const Hdf5Handle access = access_properties();
   Hdf5Handle file = own_file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()));
@@ -141,7 +145,7 @@ ContainerFile ContainerFile::open(const std::string& path) {
 }
 
 ContainerFile ContainerFile::create(const std::string& path, const std::string& kind) {
-  silence_hdf5();
+  prepare_hdf5();
   make_parent_folder(path);
   const Hdf5Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_userblock(creation.get(), block_bytes);
@@ -161,7 +165,7 @@ ContainerFile ContainerFile::create(const std::string& path, const std::string& 
 }
 
 ContainerFile ContainerFile::reopen(const std::string& path) {
-  silence_hdf5();
+  prepare_hdf5();
   check_first_block(path);
   write_first_block(path, first_block(unfinished, 0, 0));
   const Hdf5Handle access = access_properties();
