@@ -88,6 +88,7 @@ LidControl::LidControl(const HeadTemplate& head, const EyeShape& eye, const std:
     const double distance = (X - eye_.centre).norm();
     if (distance > eye_.radius + 0.010) continue;
     near_.emplace_back(v, distance);
+    if (distance < eye_.radius + 0.0015) nearness_[v] = 1;
     if ((X - eye_.centre).dot(ahead_) < 0.15 * eye_.radius) continue;
     LidVertex lid{v, across(X), elevation(X), 0, 0, distance, true, X};
     const double top = sample(upper_angle_, lid.across), bottom = sample(lower_angle_, lid.across);
@@ -99,7 +100,7 @@ LidControl::LidControl(const HeadTemplate& head, const EyeShape& eye, const std:
         (1 - smoothstep(6 * degree, (lid.upper ? 66 : 55) * degree, beyond)) * (1 - smoothstep(0, 0.006, aside));
     lid.weight = 8 * (1 - smoothstep(10 * degree, 48 * degree, beyond)) * near * (1 - smoothstep(0.001, 0.006, aside));
     lid.flat = std::min(distance, margin_height(lid.upper ? upper : lower, std::clamp(lid.across, 0.0, 1.0)) + 0.0003);
-    nearness_[v] = std::min(1.0, lid.weight / 4);
+    nearness_[v] = std::max(nearness_[v], std::min(1.0, lid.weight / 4));
     if (lid.weight > 0) vertices_.push_back(lid);
   }
 }
@@ -134,19 +135,32 @@ std::vector<Handle> LidControl::handles(const LidMotion& motion) const {
   return result;
 }
 
+Vector3d LidControl::outside(const Vector3d& x, double distance, const Vector3d& look) const {
+  const Vector3d d = x - eye_.centre;
+  const double r = d.norm();
+  if (r < 1e-6) return x;
+  const double least = std::min(distance, eye_.radius + clearance) + eye_.bulge(d / r, look);
+  return r < least ? Vector3d(eye_.centre + d * (least / r)) : x;
+}
+
 Obstacle LidControl::eyeball(const LidMotion& motion) const {
   Obstacle obstacle;
   for (const auto& [vertex, distance] : near_) obstacle.vertices.push_back(vertex);
-  obstacle.weight = 1;
+  obstacle.weight = 3;
   const Vector3d look = gaze(motion);
-  obstacle.allowed = [this, look](std::size_t k, const Vector3d& x) -> Vector3d {
-    const Vector3d d = x - eye_.centre;
-    const double r = d.norm();
-    if (r < 1e-6) return x;
-    const double least = std::min(near_[k].second, eye_.radius + clearance) + eye_.bulge(d / r, look);
-    return r < least ? Vector3d(eye_.centre + d * (least / r)) : x;
-  };
+  obstacle.allowed = [this, look](std::size_t k, const Vector3d& x) { return outside(x, near_[k].second, look); };
   return obstacle;
+}
+
+void LidControl::lift_off(const MatrixX3d& rest, MatrixX3d& displacement, const LidMotion& motion) const {
+  const Vector3d look = gaze(motion);
+  for (Eigen::Index v = 0; v < rest.rows(); ++v) {
+    const Vector3d X = rest.row(v);
+    const double distance = (X - eye_.centre).norm();
+    if (distance > eye_.radius + 0.002) continue;
+    const Vector3d x = X + displacement.row(v).transpose();
+    displacement.row(v) += (outside(x, distance, look) - x).transpose();
+  }
 }
 
 }  // namespace phiz

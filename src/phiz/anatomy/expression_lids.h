@@ -34,6 +34,10 @@ class LidControl {
   /// Keeps lids and socket off the eyeball.
   Obstacle eyeball(const LidMotion& motion) const;
 
+  /// Puts points of the skin that an expression moved into the eyeball back onto it. `rest`: where they are at rest;
+  /// those that start farther than 2 mm from the eyeball are left alone.
+  void lift_off(const MatrixX3d& rest, MatrixX3d& displacement, const LidMotion& motion) const;
+
   /// 1 for vertices at the margins of the lids, 0 for those that no margin leads; one entry per row of volume.V.
   const VectorXd& nearness() const { return nearness_; }
 
@@ -49,6 +53,8 @@ class LidControl {
     Vector3d rest;
   };
   Vector3d gaze(const LidMotion& motion) const;
+  /// x, or the point of the eyeball's surface (plus clearance) above it, for a point at `distance` at rest.
+  Vector3d outside(const Vector3d& x, double distance, const Vector3d& gaze) const;
   double elevation(const Vector3d& p) const;
 
   EyeShape eye_;

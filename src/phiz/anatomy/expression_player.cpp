@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "phiz/anatomy/expression_player.h"
 
+#include <set>
+
 #include "phiz/anatomy/expression_puff.h"
 #include "phiz/anatomy/expression_teeth.h"
 #include "phiz/geometry/operators.h"
+#include "phiz/geometry/surface.h"
+#include "phiz/geometry/topology.h"
 
 namespace phiz {
 namespace {
@@ -23,6 +27,32 @@ void smooth(MatrixX3d& D, const MatrixX3d& V, const MatrixX3i& triangles, const 
   }
 }
 
+/// Smooths the displacement round triangles that it folds over, until there are none or 40 rounds are over.
+void mend_folds(const TriangleMesh& skin, const std::vector<std::vector<int>>& neighbours, MatrixX3d& D) {
+  for (int round = 0; round < 40; ++round) {
+    const MatrixX3d V = skin.V + D;
+    const MatrixX3d faces = triangle_area_normals(V, skin.F), normals = vertex_normals(V, skin.F);
+    std::set<int> touched;
+    for (Eigen::Index f = 0; f < skin.F.rows(); ++f) {
+      const Vector3d around =
+          (normals.row(skin.F(f, 0)) + normals.row(skin.F(f, 1)) + normals.row(skin.F(f, 2))).transpose();
+      if (faces.row(f).dot(around.transpose()) >= 0) continue;
+      for (int k = 0; k < 3; ++k) {
+        touched.insert(skin.F(f, k));
+        const auto& ring = neighbours[static_cast<std::size_t>(skin.F(f, k))];
+        touched.insert(ring.begin(), ring.end());
+      }
+    }
+    if (touched.empty()) return;
+    const MatrixX3d before = D;
+    for (const int v : touched) {
+      const auto& ring = neighbours[static_cast<std::size_t>(v)];
+      const MatrixX3d others = before(ring, Eigen::all);
+      D.row(v) = 0.5 * before.row(v) + 0.5 * others.colwise().mean();
+    }
+  }
+}
+
 }  // namespace
 
 ExpressionPlayer::ExpressionPlayer(const HeadTemplate& head, const Proportions& proportions)
@@ -32,7 +62,8 @@ ExpressionPlayer::ExpressionPlayer(const HeadTemplate& head, const Proportions& 
       pulls_(head),
       lips_(head),
       left_lids_(head, {head.left_eye_centre, proportions.eye_radius}, "left"),
-      right_lids_(head, {head.right_eye_centre, proportions.eye_radius}, "right") {}
+      right_lids_(head, {head.right_eye_centre, proportions.eye_radius}, "right"),
+      neighbours_(vertex_neighbours(head.skin.F, static_cast<int>(head.skin.V.rows()))) {}
 
 MatrixX3d ExpressionPlayer::play(const ExpressionRecipe& recipe) const {
   const Eigen::Isometry3d jaw = jaw_transform(head_.jaw, jaw_pose(recipe, head_.jaw));
@@ -55,7 +86,11 @@ MatrixX3d ExpressionPlayer::play(const ExpressionRecipe& recipe) const {
                   ? (1 - lips_.nearness()[v]) * (1 - left_lids_.nearness()[v]) * (1 - right_lids_.nearness()[v])
                   : 0;
   smooth(D, head_.volume.V, head_.skin_triangles, calm);
-  return head_.skin_interpolation * D(head_.skin_vertices, Eigen::all);
+  MatrixX3d drawn = head_.skin_interpolation * D(head_.skin_vertices, Eigen::all);
+  mend_folds(head_.skin, neighbours_, drawn);
+  left_lids_.lift_off(head_.skin.V, drawn, recipe.lids);
+  right_lids_.lift_off(head_.skin.V, drawn, other);
+  return drawn;
 }
 
 }  // namespace phiz

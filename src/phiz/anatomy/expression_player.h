@@ -27,6 +27,7 @@ class ExpressionPlayer {
   MusclePulls pulls_;
   LipControl lips_;
   LidControl left_lids_, right_lids_;
+  std::vector<std::vector<int>> neighbours_;  ///< of the vertices of head.skin
 };
 
 }  // namespace phiz

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "phiz/anatomy/ease.h"
+#include "phiz/anatomy/expression_skin.h"
 #include "phiz/core/error.h"
 
 namespace phiz {
@@ -53,6 +54,16 @@ std::string full_name(const ExpressionRecipe& recipe, std::string_view muscle,
 }  // namespace
 
 MusclePulls::MusclePulls(const HeadTemplate& head) : rest_(head.volume.V) {
+  // A muscle that ends in one lip does not take the other one along, but for the corner where they meet.
+  VectorXi lip = VectorXi::Zero(rest_.rows());
+  const std::vector<char> upper = simulation_mask(head, {"upperLip", "upperLipInner"});
+  const std::vector<char> lower = simulation_mask(head, {"lowerLip", "lowerLipInner"});
+  const MatrixX3d line = skin_curve(head, "loop:upperLipLine");
+  const double corner = 0.85 * line.col(0).cwiseAbs().maxCoeff(), parting = line.col(1).mean();
+  for (std::size_t i = 0; i < upper.size(); ++i) {
+    const int v = head.skin_vertices[static_cast<Eigen::Index>(i)];
+    if (std::abs(rest_(v, 0)) < corner) lip[v] = upper[i] ? 1 : lower[i] ? -1 : 0;
+  }
   for (const Muscle& muscle : head.muscles) {
     Bundle bundle{muscle.fibres, {}, Vector3d::Zero(), false};
     if (bundle.fibres.empty()) continue;
@@ -68,11 +79,13 @@ MusclePulls::MusclePulls(const HeadTemplate& head) : rest_(head.volume.V) {
     bundle.centre /= static_cast<double>(points);
     const MatrixX3d& first = bundle.fibres.front();
     bundle.ring = (first.row(0) - first.row(first.rows() - 1)).norm() < 1e-9;
+    const Vector3d end = first.row(first.rows() - 1);
+    const int ends_in = bundle.ring || std::abs(end.x()) > corner ? 0 : end.y() > parting ? 1 : -1;
     const Eigen::AlignedBox3d reachable(box.min().array() - reach_distance, box.max().array() + reach_distance);
     for (int v = 0; v < rest_.rows(); ++v) {
       if (head.carrier[v] != static_cast<int>(Carrier::flesh)) continue;
       const Vector3d X = rest_.row(v);
-      if (!reachable.contains(X)) continue;
+      if (!reachable.contains(X) || lip[v] * ends_in < 0) continue;
       Reach best{v, -1, 0, 0};
       double distance = reach_distance * reach_distance;
       for (std::size_t f = 0; f < bundle.fibres.size(); ++f) {

@@ -44,9 +44,9 @@ std::vector<ExpressionRecipe> brow_and_nose_recipes() {
       // AU4
       {.name = "browDownLeft",
        .paired = true,
-       .pulls = {{"corrugator", 0.22},
-                 {"procerus", 0.22, Part::left},
-                 {"orbicularisOculi", 0.14, Part::upper, 0.5, 1}}},
+       .pulls = {{"corrugator", 0.30},
+                 {"procerus", 0.34, Part::left},
+                 {"orbicularisOculi", 0.24, Part::upper, 0.5, 1}}},
       // AU1: medial frontalis of both sides, with the corrugators' slant.
       {.name = "browInnerUp",
        .pulls = {{"frontalisLeft", 0.18, Part::whole, 0, 0.45},
@@ -58,12 +58,12 @@ std::vector<ExpressionRecipe> brow_and_nose_recipes() {
       // AU9
       {.name = "noseSneerLeft",
        .paired = true,
-       .pulls = {{"levatorLabiiSuperiorisAlaequeNasi", 0.30, Part::whole, 0, 1},
-                 {"nasalis", 0.20},
-                 {"levatorLabiiSuperioris", 0.06},
-                 {"procerus", 0.30, Part::left},
+       .pulls = {{"levatorLabiiSuperiorisAlaequeNasi", 0.24},
+                 {"nasalis", 0.10},
+                 {"levatorLabiiSuperioris", 0.08},
+                 {"procerus", 0.22, Part::left},
                  {"corrugator", 0.05}},
-       .upper_lip = {{.up = 1.2}, {.up = 2}, {.up = 1}, 0.5},
+       .upper_lip = {{.up = 1.4}, {.up = 2.4}, {.up = 1.2}, 0.6},
        .lids = {.lower = 0.10}},
   };
 }
@@ -128,7 +128,7 @@ std::vector<ExpressionRecipe> lip_ring_recipes() {
       {.name = "mouthShrugLower",
        .pulls = {{"mentalisLeft", 0.30}, {"mentalisRight", 0.30}},
        .upper_lip = {{.up = 3, .out = 1}, {.up = 2.2, .out = 0.7}, {.up = -0.5}, 1.5},
-       .lower_lip = {{.up = 3.5, .out = 2.5, .roll = 14}, {.up = 2.4, .out = 1.8, .roll = 10}, {.up = -0.5}, 2}},
+       .lower_lip = {{.up = 4.5, .out = 2.5, .roll = 14}, {.up = 2.4, .out = 1.8, .roll = 10}, {.up = -0.5}, 2}},
       {.name = "mouthShrugUpper",
        .pulls = {{"levatorLabiiSuperiorisAlaequeNasiLeft", 0.03}, {"levatorLabiiSuperiorisAlaequeNasiRight", 0.03}},
        .upper_lip = {{.up = 3.2, .out = 3, .roll = 14}, {.up = 2.4, .out = 2.3, .roll = 10}, {}, 2.5},
