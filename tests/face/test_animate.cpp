@@ -53,7 +53,7 @@ TEST(Animate, EveryFrameIsFreeOfPenetrationAndKeepsItsVolume) {
   int touching = 0;
   for (const TakeFrame& frame : take.frames) {
     EXPECT_LT(frame.statistics.penetration, 1e-4);
-    EXPECT_LT(std::abs(frame.statistics.volume_change), 0.06);  // the aim is 0.02: docs/STATUS.md
+    EXPECT_LT(std::abs(frame.statistics.volume_change), 0.02);
     EXPECT_TRUE(frame.skin.allFinite());
     touching += frame.statistics.contacts > 0 ? 1 : 0;
   }

@@ -18,7 +18,8 @@ TEST(VolumetricBench, AnIndependentSolverReachesTheSameStates) {
   EXPECT_EQ(bench.frames, 30);
   EXPECT_EQ(bench.ms.size(), 29U);
   ASSERT_TRUE(bench.skin_error_mm_max.has_value());
-  EXPECT_LT(*bench.skin_error_mm_max, 0.2);  // the aim is 0.05 with a converged reference: docs/STATUS.md
+  EXPECT_TRUE(bench.reference_converged);
+  EXPECT_LT(*bench.skin_error_mm_max, 0.05);
   EXPECT_LT(bench.penetration_mm_max, 0.1);
   EXPECT_GT(bench.contacts_max, 0);
   EXPECT_GT(bench.peak_rss_mib, 1);
