@@ -16,8 +16,18 @@ namespace phiz::testing {
 
 inline HeadTemplate small_head() {
   const double gap = 4e-4;
-  const TetMesh lower = box({-0.020, -0.012, 0.06}, {0.020, 0, 0.068}, 9, 5, 4);
-  const TetMesh upper = box({-0.020, gap, 0.06}, {0.020, 0.012 + gap, 0.068}, 9, 5, 4);
+  TetMesh lower = box({-0.020, -0.012, 0.06}, {0.020, 0, 0.068}, 9, 5, 4);
+  TetMesh upper = box({-0.020, gap, 0.06}, {0.020, 0.012 + gap, 0.068}, 9, 5, 4);
+  // Lips are round: their free ends fall away from the middle to all sides.
+  const auto round = [](TetMesh& lip, double end, double far) {
+    for (Eigen::Index v = 0; v < lip.V.rows(); ++v) {
+      const double across = (lip.V(v, 2) - 0.064) / 0.004, along = lip.V(v, 0) / 0.020;
+      const double share = (lip.V(v, 1) - far) / (end - far);
+      lip.V(v, 1) += (far > end ? 1 : -1) * share * share * (0.003 * across * across + 0.002 * along * along);
+    }
+  };
+  round(lower, 0, -0.012);
+  round(upper, gap, 0.012 + gap);
   const int split = static_cast<int>(lower.V.rows());
   HeadTemplate head;
   head.name = "small";

@@ -178,6 +178,8 @@ SolveStatistics Descent::run(double* x) {
   std::copy_n(x, 4 * system_.vertices, trial.get());
   AlignedVector last_p = allocate();
   std::fill_n(last_p.get(), size, 0.0);
+  AlignedVector apart = hwy::AllocateAligned<double>(static_cast<std::size_t>(4 * system_.vertices));
+  bool has_apart = false;  // the last state without penetration
   double last_length2 = 0, relaxation = 1;
   SolveStatistics statistics;
   double energy = system_.evaluate(x, g.get(), system_.free);
@@ -196,13 +198,13 @@ SolveStatistics Descent::run(double* x) {
     // shortened.
     const double back = dot(p.get(), last_p.get(), size);
     const double length2 = dot(p.get(), p.get(), size);
-    if (statistics.iterations > settle && back < -0.3 * std::sqrt(length2 * last_length2))
-      relaxation = std::max(0.125, 0.6 * relaxation);
+    if (!contact.rows.empty() && statistics.iterations > settle && back < -0.3 * std::sqrt(length2 * last_length2))
+      relaxation *= 0.6;
     else
-      relaxation = std::min(1.0, 1.3 * relaxation);
+      relaxation = std::min(1.0, 1.1 * relaxation);
     std::copy_n(p.get(), size, last_p.get());
     last_length2 = length2;
-    double alpha = contact.rows.empty() ? 1.0 : relaxation;
+    double alpha = relaxation;
     if (alpha * reach > options_.longest_step) alpha = options_.longest_step / reach;
 
     // Armijo's rule on the energy minus the work of the contact forces, which falls along p also out of penetrations. A
@@ -242,7 +244,13 @@ SolveStatistics Descent::run(double* x) {
     if (small_step || last) statistics.residual = force / system_.force_scale();
     statistics.converged = small_step && statistics.residual <= options_.residual_tolerance &&
                            statistics.penetration <= options_.penetration_tolerance;
-    if (last || (statistics.converged && statistics.iterations >= options_.min_iterations)) break;
+    if (statistics.iterations > settle && statistics.penetration <= options_.penetration_tolerance) {
+      std::copy_n(x, 4 * system_.vertices, apart.get());
+      has_apart = true;
+    }
+    const bool stalled = relaxation < 0.5 && alpha * reach <= options_.step_tolerance;
+    if (stalled) statistics.residual = force / system_.force_scale();
+    if (last || stalled || (statistics.converged && statistics.iterations >= options_.min_iterations)) break;
 
     std::copy_n(next_g.get(), size, next_v.get());
     system_.solver->solve(next_v.get());
@@ -257,6 +265,11 @@ SolveStatistics Descent::run(double* x) {
     }
     std::swap(g, next_g);
     std::swap(v, next_v);
+  }
+  if (has_apart && statistics.penetration > options_.penetration_tolerance) {
+    // Two states took turns; of the two, the one without penetration.
+    std::copy_n(apart.get(), 4 * system_.vertices, x);
+    statistics.penetration = deepest(detect(x));
   }
   statistics.energy = energy;
   return statistics;

@@ -140,7 +140,7 @@ std::optional<SignedContact> Obstacle::closest(const Vector3d& point, double rea
 }
 
 std::vector<SignedContact> Obstacle::beside(const Vector3d& point, const SignedContact& closest, double reach) const {
-  constexpr double same_plane = 0.97, other_side = -0.2;
+  constexpr double same_plane = 0.9995, other_side = -0.2;
   constexpr std::size_t most = 2;
   const Vector3d p = is_rigid() ? Vector3d(transform_.inverse() * point) : point;
   const auto local = [&](const Vector3d& n) { return is_rigid() ? Vector3d(transform_.linear().transpose() * n) : n; };
