@@ -111,10 +111,11 @@ struct Simulation::Parts {
     }
     std::vector<double> farthest(static_cast<std::size_t>(x.rows() / 256 + 1), 0.0);
     parallel_chunks(x.rows(), 256, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      MatrixX3f sum = MatrixX3f::Zero(end - begin, 3);
+      for (const auto& [d, dw] : active) sum += dw * d->middleRows(begin, end - begin);
       for (std::ptrdiff_t v = begin; v < end; ++v) {
         const Vector3d p = x.row(v);
-        Vector3d move = share[v] * (turn * p - p);
-        for (const auto& [d, dw] : active) move += static_cast<double>(dw) * d->row(v).transpose().cast<double>();
+        const Vector3d move = share[v] * (turn * p - p) + sum.row(v - begin).transpose().cast<double>();
         x.row(v) += move;
         farthest[static_cast<std::size_t>(begin / 256)] =
             std::max(farthest[static_cast<std::size_t>(begin / 256)], move.norm());
