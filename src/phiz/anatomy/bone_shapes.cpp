@@ -187,7 +187,7 @@ double skull_mm(const Vector3d& p, bool detailed) {
   f = carve(f, temporal_fossa(p), 10);
   f = blend(f, brow_and_orbital_rim(p), 8);
   f = blend(f, zygoma(p), 6);
-  f = carve(f, orbit(p), 4);
+  f = carve(f, orbit(p) + (detailed ? 0 : 2), 4);  // sturdier rims to simulate with
   f = carve(f, nasal_opening(p, detailed), 3);
   f = carve(f, palate(p), 3);
   f = blend(f, cervical_column(p, detailed), 6);
@@ -271,7 +271,7 @@ double reference_skull_struts(const Vector3d& p) {
   const double rim = implicit::bar(q, orbital_rim, {1, 1, 1}) + 1.2;
   const double arch = implicit::bar(q, zygomatic_arch, arch_section) + 0.3;
   const double nose = capsule(q, {0, 37, 58}, {0, 22, 67.5}, 6.5, 4.8);
-  return 1e-3 * carve(std::min({rim, arch, nose}), orbit(q) - 0.3, 1);
+  return 1e-3 * carve(std::min({rim, arch, nose}), orbit(q) + 1, 1);
 }
 
 double reference_mandible_struts(const Vector3d& p) {

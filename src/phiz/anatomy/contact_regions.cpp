@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "phiz/core/error.h"
+#include "phiz/geometry/spatial_query.h"
 
 namespace phiz {
 namespace {
@@ -44,6 +45,20 @@ ContactRegion contact_region(const std::string& name, const Flags& inside, const
   return result;
 }
 
+/// Takes the vertices that lie inside `part` at rest out of the contact regions: the folds behind the gums, whose
+/// hidden rims reach through the roof and the floor of the oral cavity.
+void release_vertices_inside(HeadTemplate& head, const std::string& part) {
+  const Part* obstacle = find_part(head, part);
+  if (obstacle == nullptr) reject("built-in head", "there is no part " + part);
+  const SurfaceQuery query(obstacle->mesh);
+  for (ContactRegion& contact : head.contact_regions) {
+    Eigen::Index kept = 0;
+    for (const int v : contact.vertices)
+      if (query.signed_distance(head.volume.V.row(v)) > 0) contact.vertices(kept++) = v;
+    contact.vertices.conservativeResize(kept);
+  }
+}
+
 }  // namespace
 
 void assign_contacts(HeadTemplate& head, const SkinRegions& regions) {
@@ -67,6 +82,8 @@ void assign_contacts(HeadTemplate& head, const SkinRegions& regions) {
   add("rightCheek", right);
   for (const char* lid : {"leftUpperLid", "leftLowerLid", "rightUpperLid", "rightLowerLid"})
     add(lid, flags(regions, {lid}, n));
+
+  for (const char* gums : {"upperGums", "lowerGums"}) release_vertices_inside(head, gums);
 
   head.contact_pairs = {{"upperLip", "lowerLip"}, {"lowerLip", "upperLip"}};
   for (const char* soft : {"upperLip", "lowerLip", "leftCheek", "rightCheek"})
