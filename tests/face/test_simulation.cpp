@@ -76,7 +76,9 @@ TEST(Simulation, PressedLipsMeetWithoutPenetrationOrLossOfVolume) {
   Simulation without(model(), ghost);
   without.solve_static(weights(0, 0, 1));
   double overlap = -1;
-  const auto upper = [](const Vector3d& rest) { return rest.y() > 0 && rest.y() < 1.2e-3 && std::abs(rest.x()) < 0.01; };
+  const auto upper = [](const Vector3d& rest) {
+    return rest.y() > 0 && rest.y() < 1.2e-3 && std::abs(rest.x()) < 0.01;
+  };
   for (Eigen::Index v = 0; v < without.positions().rows(); ++v)
     if (upper(model().head.volume.V.row(v))) overlap = std::max(overlap, -without.positions()(v, 1));
   EXPECT_GT(overlap, 5e-4);
