@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "phiz/anatomy/expression_flesh.h"
 
-#include <Eigen/CholmodSupport>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,11 +9,10 @@
 #include "phiz/core/error.h"
 #include "phiz/core/parallel.h"
 #include "phiz/geometry/operators.h"
+#include "phiz/numerics/cholesky.h"
 
 namespace phiz {
 namespace {
-
-using Factor = Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>>;
 
 constexpr double rigidity = 1.0;           ///< weight of |F - R|^2
 constexpr double incompressibility = 2.0;  ///< weight of |F - P|^2, P the nearest matrix of determinant 1
@@ -64,8 +62,8 @@ struct FleshPoser::State {
   VectorXi carrier, unknown;                      ///< unknown: number among the free vertices or -1
   std::vector<int> free;
   std::vector<std::vector<std::pair<int, int>>> around;  ///< (tet, corner) per free vertex
-  Eigen::SparseMatrix<double> matrix;                    ///< Laplacian of the free vertices
-  Eigen::SparseMatrix<double> coupling;                  ///< free x all, the columns of carried vertices
+  SparseMatrixd matrix;                                  ///< Laplacian of the free vertices
+  SparseMatrixd coupling;                                ///< free x all, the columns of carried vertices
   VectorXd diagonal, jaw_share;
 
   MatrixX3d carried(const Eigen::Isometry3d& jaw) const {
@@ -139,8 +137,7 @@ FleshPoser::FleshPoser(const TetMesh& volume, const VectorXi& carrier, const Vec
 
   VectorXd share = VectorXd::Zero(s.rest.rows());
   for (Eigen::Index v = 0; v < share.size(); ++v) share[v] = carrier[v] == static_cast<int>(Carrier::mandible) ? 1 : 0;
-  const Factor factor(s.matrix);
-  if (factor.info() != Eigen::Success) fail("the flesh is not connected to bone everywhere");
+  const SparseCholesky factor(s.matrix);
   const VectorXd solved = factor.solve(VectorXd(-(s.coupling * share)));
   for (Eigen::Index i = 0; i < n; ++i) share[s.free[static_cast<std::size_t>(i)]] = std::clamp(solved[i], 0.0, 1.0);
   s.jaw_share = share;
@@ -170,10 +167,9 @@ MatrixX3d FleshPoser::pose(const std::vector<Handle>& handles, const std::vector
   for (const Obstacle& o : obstacles)
     for (const int v : o.vertices)
       if (s.unknown[v] >= 0) springs[s.unknown[v]] += o.weight * s.diagonal[s.unknown[v]];
-  Eigen::SparseMatrix<double> A = s.matrix;
+  SparseMatrixd A = s.matrix;
   A.diagonal() += springs;
-  const Factor factor(A);
-  if (factor.info() != Eigen::Success) fail("the flesh is not connected to bone everywhere");
+  const SparseCholesky factor(A);
 
   MatrixX3d X = s.carried(jaw);
   const MatrixX3d fixed_part = s.coupling * X;

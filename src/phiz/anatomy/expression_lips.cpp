@@ -61,7 +61,7 @@ LipControl::LipControl(const HeadTemplate& head) {
     if (grip <= 0 || head.carrier[v] != static_cast<int>(Carrier::flesh)) continue;
     LipVertex entry{v, std::clamp((X.x() - centre) / half, -1.2, 1.2), grip, 0, 0, 0, true, X};
     entry.follow = 1 - smoothstep(0.002, 0.024, distance);
-    entry.near = 1 - smoothstep(0.001, 0.016, distance);
+    entry.near = 1 - smoothstep(0.001, 0.022, distance);
     entry.lip = 1 - smoothstep(0.005, 0.012, distance);
     const Frame frame = frame_at(entry.along);
     const auto k = static_cast<std::size_t>(i);
@@ -92,7 +92,7 @@ std::vector<Handle> LipControl::handles(const ExpressionRecipe& recipe, const Ei
     const LipMotion& motion = v.upper ? recipe.upper_lip : recipe.lower_lip;
     const double side = recipe.paired && !recipe.both_halves ? smoothstep(-0.3, 0.35, v.along) : 1;
     const double q = std::min(1.0, v.along * v.along);
-    double weight = recipe.sealed ? 4 * v.grip : motion.hold * v.grip * side;
+    double weight = recipe.sealed ? 4 * v.grip + 6 * nearness_[v.vertex] : motion.hold * v.grip * side;
     if (recipe.open > 0 && !recipe.sealed) weight *= 1 - q;  // the corners are free on an open jaw
     if (weight <= 0) continue;
     const LipSection m = section(motion, v.along);
@@ -105,7 +105,7 @@ std::vector<Handle> LipControl::handles(const ExpressionRecipe& recipe, const Ei
     const Vector3d way = m.up * f.up + m.out * forward + (m.wide * sideways + m.left) * Vector3d::UnitX();
     const Vector3d moved = rolled + side * v.follow * mm * way;
     // The lower lip rides on the jaw, less so towards the corners; sealed lips meet halfway, their surroundings less.
-    const double ride = recipe.sealed ? (v.upper ? 0.38 * v.near : 1 - 0.62 * v.near)
+    const double ride = recipe.sealed ? (v.upper ? 0.42 * v.near : 1 - 0.58 * v.near)
                         : v.upper     ? 0.45 * q * q
                                       : 1 - 0.55 * q * q;
     result.push_back({v.vertex, (1 - ride) * moved + ride * (jaw * moved), weight});

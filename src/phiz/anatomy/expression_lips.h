@@ -31,7 +31,7 @@ class LipControl {
     double along;   ///< -1 right corner, 0 centre, 1 left corner
     double grip;    ///< how firmly the ring of the lips holds it: 1 near the parting line, 0 at 16 mm
     double follow;  ///< share of the lip's way that it goes: 1 near the line, 0 at 24 mm
-    double near;    ///< share of a sealed lip's way: 1 near the line, 0 at 16 mm
+    double near;    ///< share of a sealed lip's way: 1 near the line, 0 at 22 mm
     double lip;     ///< how far it belongs to the body of the lip, which rolls
     bool upper;
     Vector3d rest;

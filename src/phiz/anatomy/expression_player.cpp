@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "phiz/anatomy/expression_player.h"
 
+#include <algorithm>
 #include <set>
 
 #include "phiz/anatomy/expression_puff.h"
@@ -27,16 +28,26 @@ void smooth(MatrixX3d& D, const MatrixX3d& V, const MatrixX3i& triangles, const 
   }
 }
 
-/// Smooths the displacement round triangles that it folds over, until there are none or 40 rounds are over.
+/// Cosine between every triangle and the mean normal of its corners: negative where it is folded over.
+VectorXd uprightness(const MatrixX3d& V, const MatrixX3i& F) {
+  const MatrixX3d faces = triangle_area_normals(V, F), normals = vertex_normals(V, F);
+  VectorXd cosine(F.rows());
+  for (Eigen::Index f = 0; f < F.rows(); ++f) {
+    const Vector3d around = (normals.row(F(f, 0)) + normals.row(F(f, 1)) + normals.row(F(f, 2))).transpose();
+    cosine[f] = faces.row(f).dot(around.transpose()) / std::max(faces.row(f).norm() * around.norm(), 1e-30);
+  }
+  return cosine;
+}
+
+/// Smooths the displacement round triangles that it folds over, or nearly so when they are not at rest, until there are
+/// none or 40 rounds are over.
 void mend_folds(const TriangleMesh& skin, const std::vector<std::vector<int>>& neighbours, MatrixX3d& D) {
+  const VectorXd at_rest = uprightness(skin.V, skin.F);
   for (int round = 0; round < 40; ++round) {
-    const MatrixX3d V = skin.V + D;
-    const MatrixX3d faces = triangle_area_normals(V, skin.F), normals = vertex_normals(V, skin.F);
+    const VectorXd now = uprightness(skin.V + D, skin.F);
     std::set<int> touched;
     for (Eigen::Index f = 0; f < skin.F.rows(); ++f) {
-      const Vector3d around =
-          (normals.row(skin.F(f, 0)) + normals.row(skin.F(f, 1)) + normals.row(skin.F(f, 2))).transpose();
-      if (faces.row(f).dot(around.transpose()) >= 0) continue;
+      if (now[f] >= (at_rest[f] > 0.4 ? 0.15 : 0.0)) continue;
       for (int k = 0; k < 3; ++k) {
         touched.insert(skin.F(f, k));
         const auto& ring = neighbours[static_cast<std::size_t>(skin.F(f, k))];

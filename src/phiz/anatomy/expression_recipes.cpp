@@ -49,12 +49,12 @@ std::vector<ExpressionRecipe> brow_and_nose_recipes() {
                  {"orbicularisOculi", 0.24, Part::upper, 0.5, 1}}},
       // AU1: medial frontalis of both sides, with the corrugators' slant.
       {.name = "browInnerUp",
-       .pulls = {{"frontalisLeft", 0.18, Part::whole, 0, 0.45},
-                 {"frontalisRight", 0.18, Part::whole, 0, 0.45},
+       .pulls = {{"frontalisLeft", 0.23, Part::whole, 0, 0.45},
+                 {"frontalisRight", 0.23, Part::whole, 0, 0.45},
                  {"corrugatorLeft", 0.06},
                  {"corrugatorRight", 0.06}}},
       // AU2
-      {.name = "browOuterUpLeft", .paired = true, .pulls = {{"frontalis", 0.19, Part::whole, 0.5, 1}}},
+      {.name = "browOuterUpLeft", .paired = true, .pulls = {{"frontalis", 0.24, Part::whole, 0.5, 1}}},
       // AU9
       {.name = "noseSneerLeft",
        .paired = true,
@@ -70,8 +70,8 @@ std::vector<ExpressionRecipe> brow_and_nose_recipes() {
 
 std::vector<ExpressionRecipe> jaw_recipes() {
   return {
-      {.name = "jawForward", .jaw_down = 1.5, .jaw_forward = 6},
-      {.name = "jawLeft", .paired = true, .swing = 0.07, .jaw_down = 0.8, .jaw_side = 3.5},
+      {.name = "jawForward", .jaw_down = 0.6, .jaw_forward = 7},
+      {.name = "jawLeft", .paired = true, .swing = 0.085, .jaw_down = 0.3, .jaw_side = 3.5},
       // AU27
       {.name = "jawOpen",
        .upper_lip = {.hold = 0.25},
