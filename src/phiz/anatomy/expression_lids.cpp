@@ -13,6 +13,8 @@ namespace {
 
 constexpr int stations = 33;
 constexpr double degree = std::numbers::pi / 180;
+constexpr double closed_at = 0.14;     ///< where the lids meet: share of the fissure, from the lower margin
+constexpr double half_gap = 0.006;     ///< that each lid keeps from there, radians about the middle of the eye
 constexpr double clearance = 0.00012;  ///< that lids keep from the eyeball, metres
 
 double sample(const VectorXd& values, double across) {
@@ -128,6 +130,13 @@ std::vector<Handle> LidControl::handles(const LidMotion& motion) const {
     // The fold above the eye unrolls and lies flat on the globe.
     const double drawn = smoothstep(0, 25 * degree, std::abs(v.follow * turn)) * ((turn < 0) == v.upper ? 1 : 0);
     d *= 1 - drawn * (1 - v.flat / (v.rest - eye_.centre).norm());
+    if (v.follow > 0.5 && motion.upper + motion.lower > 0.9) {  // neither lid passes the line where they meet
+      const double meeting = sample(lower_angle_, v.across) + closed_at * fissure;
+      const double at = std::atan2(d.dot(up_), d.dot(ahead_));
+      const double gap = std::min(half_gap, 0.1 * fissure);
+      const double past = v.upper ? meeting + gap - at : at - meeting + gap;
+      if (past > 0) d = Eigen::AngleAxisd(lift * (v.upper ? past : -past), axis_) * d;
+    }
     const Vector3d direction = d.normalized(), before = (v.rest - eye_.centre).normalized();
     d += direction * (eye_.bulge(direction, look) - eye_.bulge(before, Vector3d::UnitZ()));
     result.push_back({v.vertex, eye_.centre + d, v.weight});

@@ -74,6 +74,8 @@ ExpressionPlayer::ExpressionPlayer(const HeadTemplate& head, const Proportions& 
       lips_(head),
       left_lids_(head, {head.left_eye_centre, proportions.eye_radius}, "left"),
       right_lids_(head, {head.right_eye_centre, proportions.eye_radius}, "right"),
+      lip_contact_(head, "upperLip", "lowerLip"),
+      left_lid_contact_(head, "leftUpperLid", "leftLowerLid"),
       neighbours_(vertex_neighbours(head.skin.F, static_cast<int>(head.skin.V.rows()))) {}
 
 MatrixX3d ExpressionPlayer::play(const ExpressionRecipe& recipe) const {
@@ -98,6 +100,8 @@ MatrixX3d ExpressionPlayer::play(const ExpressionRecipe& recipe) const {
                   : 0;
   smooth(D, head_.volume.V, head_.skin_triangles, calm);
   MatrixX3d drawn = head_.skin_interpolation * D(head_.skin_vertices, Eigen::all);
+  if (!recipe.sealed) lip_contact_.keep_apart(drawn);
+  left_lid_contact_.keep_apart(drawn);
   mend_folds(head_.skin, neighbours_, drawn);
   left_lids_.lift_off(head_.skin.V, drawn, recipe.lids);
   right_lids_.lift_off(head_.skin.V, drawn, other);

@@ -2,6 +2,7 @@
 /// Plays one expression recipe on a head: muscles, lips, lids, jaw and air act, the flesh follows.
 #pragma once
 
+#include "phiz/anatomy/expression_contact.h"
 #include "phiz/anatomy/expression_flesh.h"
 #include "phiz/anatomy/expression_lids.h"
 #include "phiz/anatomy/expression_lips.h"
@@ -27,7 +28,8 @@ class ExpressionPlayer {
   MusclePulls pulls_;
   LipControl lips_;
   LidControl left_lids_, right_lids_;
-  std::vector<std::vector<int>> neighbours_;  ///< of the vertices of head.skin
+  PatchContact lip_contact_, left_lid_contact_;  // only left lids are played
+  std::vector<std::vector<int>> neighbours_;     ///< of the vertices of head.skin
 };
 
 }  // namespace phiz
