@@ -10,7 +10,7 @@
 #include <string>
 #include <thread>
 
-#include "phiz/anatomy/builtin_head.h"
+#include "phiz/anatomy/builtin/builtin_head.h"
 #include "phiz/core/progress.h"
 #include "phiz/core/version.h"
 #include "phiz/face/volumetric_bench.h"

@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "phiz/anatomy/builtin_head.h"
+#include "phiz/anatomy/builtin/builtin_head.h"
 #include "phiz/core/progress.h"
 #include "phiz/io/container.h"
 #include "report.h"

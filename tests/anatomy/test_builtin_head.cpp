@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "phiz/anatomy/builtin_head.h"
+#include "phiz/anatomy/builtin/builtin_head.h"
 #include "phiz/core/error.h"
 #include "phiz/core/parallel.h"
 #include "phiz/geometry/operators.h"

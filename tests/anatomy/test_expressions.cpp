@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "phiz/anatomy/builtin_head.h"
+#include "phiz/anatomy/builtin/builtin_head.h"
+#include "phiz/anatomy/builtin/expressions/recipes.h"
 #include "phiz/anatomy/expression_names.h"
-#include "phiz/anatomy/expression_recipes.h"
 #include "phiz/geometry/surface.h"
 
 namespace phiz {

@@ -3,8 +3,8 @@
 
 #include <set>
 
-#include "phiz/anatomy/builtin_head.h"
-#include "phiz/anatomy/muscles.h"
+#include "phiz/anatomy/builtin/builtin_head.h"
+#include "phiz/anatomy/builtin/muscles.h"
 #include "phiz/geometry/operators.h"
 
 namespace phiz {

@@ -5,9 +5,9 @@
 #include <limits>
 #include <set>
 
-#include "phiz/anatomy/skin_eye.h"
-#include "phiz/anatomy/skin_surface.h"
-#include "phiz/anatomy/skin_topology.h"
+#include "phiz/anatomy/builtin/skin/eye.h"
+#include "phiz/anatomy/builtin/skin/surface.h"
+#include "phiz/anatomy/builtin/skin/topology.h"
 #include "phiz/core/error.h"
 #include "phiz/geometry/surface.h"
 #include "phiz/geometry/topology.h"

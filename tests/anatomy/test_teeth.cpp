@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "phiz/anatomy/dental_arch.h"
-#include "phiz/anatomy/teeth.h"
-#include "phiz/anatomy/tongue.h"
+#include "phiz/anatomy/builtin/mouth/dental_arch.h"
+#include "phiz/anatomy/builtin/mouth/teeth.h"
+#include "phiz/anatomy/builtin/mouth/tongue.h"
 #include "phiz/geometry/surface.h"
 #include "phiz/geometry/topology.h"
 

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The built-in head: a HeadTemplate made by code from parameters (Ichim et al. 2017, section 5.1; Kadlecek et al.'s
+/// template, section 3), with nothing to download.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "phiz/anatomy/builtin/skin/identity.h"
+#include "phiz/anatomy/head_template.h"
+
+namespace phiz {
+
+/// Fineness: about 8k, 35k to 40k, at least 150k soft tets (flesh tets with a vertex that is free to move).
+enum class HeadSize { preview, standard, fine };
+
+/// "preview", "standard" or "fine", else phiz::Error(usage).
+HeadSize head_size(const std::string& name);
+std::string head_size_name(HeadSize size);
+
+struct BuiltinOptions {
+  HeadSize size = HeadSize::standard;
+  std::optional<std::uint64_t> person;             ///< seed of a random person; the mean person without
+  std::optional<IdentityParameters> identity;      ///< this person; wins over `person`
+  bool expressions = true;                         ///< make the 52 expressions, the longest part of the work
+  std::function<void(const std::string&)> report;  ///< told what is being done, when set
+};
+
+/// Builds the head. The simulation skin is a level of the skin's limit surface whose vertices come first in
+/// HeadTemplate::volume and in HeadTemplate::skin; then follow the vertices of the skull's and of the mandible's
+/// surface, then inner ones. Deterministic. Throws phiz::Error when a person cannot be built.
+HeadTemplate build_builtin_head(const BuiltinOptions& options = {});
+
+/// Number of tets of region flesh with at least one free vertex.
+Eigen::Index soft_tet_count(const HeadTemplate& head);
+
+}  // namespace phiz

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "phiz/anatomy/builtin/contact_regions.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "phiz/core/error.h"
+#include "phiz/geometry/spatial_query.h"
+
+namespace phiz {
+namespace {
+
+using Flags = std::vector<char>;
+
+const VectorXi& region(const SkinRegions& regions, const std::string& name) {
+  const auto found = regions.find(name);
+  if (found == regions.end()) reject("built-in head", "the skin has no region " + name);
+  return found->second;
+}
+
+Flags flags(const SkinRegions& regions, std::initializer_list<const char*> names, Eigen::Index count) {
+  Flags result(count, 0);
+  for (const char* name : names)
+    for (const int v : region(regions, name)) result[v] = 1;
+  return result;
+}
+
+/// The vertices of the triangles whose corners are all flagged, and those triangles.
+ContactRegion contact_region(const std::string& name, const Flags& inside, const MatrixX3i& triangles) {
+  ContactRegion result;
+  result.name = name;
+  result.triangles.resize(triangles.rows(), 3);
+  Flags used(inside.size(), 0);
+  Eigen::Index count = 0;
+  for (Eigen::Index f = 0; f < triangles.rows(); ++f) {
+    if (!inside[triangles(f, 0)] || !inside[triangles(f, 1)] || !inside[triangles(f, 2)]) continue;
+    result.triangles.row(count++) = triangles.row(f);
+    for (int k = 0; k < 3; ++k) used[triangles(f, k)] = 1;
+  }
+  result.triangles.conservativeResize(count, 3);
+  result.vertices.resize(std::count(used.begin(), used.end(), 1));
+  Eigen::Index row = 0;
+  for (std::size_t v = 0; v < used.size(); ++v)
+    if (used[v]) result.vertices(row++) = static_cast<int>(v);
+  return result;
+}
+
+/// Takes the vertices that lie inside `part` at rest out of the contact regions: the folds behind the gums, whose
+/// hidden rims reach through the roof and the floor of the oral cavity.
+void release_vertices_inside(HeadTemplate& head, const std::string& part) {
+  const Part* obstacle = find_part(head, part);
+  if (obstacle == nullptr) reject("built-in head", "there is no part " + part);
+  const SurfaceQuery query(obstacle->mesh);
+  for (ContactRegion& contact : head.contact_regions) {
+    Eigen::Index kept = 0;
+    for (const int v : contact.vertices)
+      if (query.signed_distance(head.volume.V.row(v)) > 0) contact.vertices(kept++) = v;
+    contact.vertices.conservativeResize(kept);
+  }
+}
+
+}  // namespace
+
+void assign_contacts(HeadTemplate& head, const SkinRegions& regions) {
+  const Eigen::Index n = head.skin_vertices.size();
+  const auto add = [&](const std::string& name, const Flags& inside) {
+    head.contact_regions.push_back(contact_region(name, inside, head.skin_triangles));
+  };
+  add("upperLip", flags(regions, {"upperLip", "upperLipInner"}, n));
+  add("lowerLip", flags(regions, {"lowerLip", "lowerLipInner"}, n));
+  // Cheeks: what is left of the bag's wall beside the teeth.
+  const Flags lips = flags(regions, {"upperLip", "lowerLip"}, n);
+  const Flags ends = flags(regions, {"oralRoof", "oralFloor"}, n);
+  Flags left = flags(regions, {"mouthBag"}, n), right = left;
+  for (Eigen::Index v = 0; v < n; ++v) {
+    const double x = head.volume.V(v, 0);
+    const bool wall = left[v] && !lips[v] && !ends[v] && std::abs(x) > 0.018;
+    left[v] = wall && x > 0;
+    right[v] = wall && x < 0;
+  }
+  add("leftCheek", left);
+  add("rightCheek", right);
+  for (const char* lid : {"leftUpperLid", "leftLowerLid", "rightUpperLid", "rightLowerLid"})
+    add(lid, flags(regions, {lid}, n));
+
+  for (const char* gums : {"upperGums", "lowerGums"}) release_vertices_inside(head, gums);
+
+  head.contact_pairs = {{"upperLip", "lowerLip"}, {"lowerLip", "upperLip"}};
+  for (const char* soft : {"upperLip", "lowerLip", "leftCheek", "rightCheek"})
+    for (const char* hard : {"upperTeeth", "lowerTeeth", "upperGums", "lowerGums"})
+      head.contact_pairs.push_back({soft, hard});
+  for (const std::string side : {"left", "right"}) {
+    head.contact_pairs.push_back({side + "UpperLid", side + "Eye"});
+    head.contact_pairs.push_back({side + "LowerLid", side + "Eye"});
+    head.contact_pairs.push_back({side + "UpperLid", side + "LowerLid"});
+    head.contact_pairs.push_back({side + "LowerLid", side + "UpperLid"});
+  }
+}
+
+}  // namespace phiz

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "phiz/anatomy/builtin/expressions/lips.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "phiz/anatomy/builtin/ease.h"
+#include "phiz/anatomy/builtin/expressions/skin.h"
+
+namespace phiz {
+namespace {
+
+constexpr int stations = 65;
+
+/// Through the values at the centre, halfway and the corner; even and smooth across the centre.
+LipSection section(const LipMotion& m, double along) {
+  const double q = std::min(1.0, along * along), a = (1 - q) * (0.25 - q) / 0.25, b = q * (1 - q) / 0.1875,
+               c = q * (q - 0.25) / 0.75;
+  const auto mix = [&](double LipSection::*field) {
+    return a * m.centre.*field + b * m.middle.*field + c * m.corner.*field;
+  };
+  return {mix(&LipSection::up), mix(&LipSection::out), mix(&LipSection::wide), mix(&LipSection::left),
+          mix(&LipSection::roll)};
+}
+
+/// A curve from corner to corner resampled at `stations` places, even in x, right corner first.
+MatrixX3d by_width(const MatrixX3d& curve) {
+  MatrixX3d rightward = curve;
+  if (curve(0, 0) > curve(curve.rows() - 1, 0)) rightward = curve.colwise().reverse();
+  MatrixX3d result(stations, 3);
+  const Eigen::Index last = rightward.rows() - 1;
+  Eigen::Index i = 0;
+  for (int k = 0; k < stations; ++k) {
+    const double x = rightward(0, 0) + (rightward(last, 0) - rightward(0, 0)) * k / (stations - 1);
+    while (i + 1 < last && rightward(i + 1, 0) < x) ++i;
+    const double span = rightward(i + 1, 0) - rightward(i, 0);
+    const double t = span > 0 ? std::clamp((x - rightward(i, 0)) / span, 0.0, 1.0) : 0;
+    result.row(k) = (1 - t) * rightward.row(i) + t * rightward.row(i + 1);
+  }
+  return result;
+}
+
+}  // namespace
+
+LipControl::LipControl(const HeadTemplate& head) {
+  const MatrixX3d upper = by_width(skin_curve(head, "loop:upperLipLine"));
+  const MatrixX3d lower = by_width(skin_curve(head, "loop:lowerLipLine"));
+  line_ = 0.5 * (upper + lower);
+  nearness_.setZero(head.volume.V.rows());
+  const std::vector<char> in_upper = simulation_mask(head, {"upperLip", "upperLipInner"});
+  const std::vector<char> in_lower = simulation_mask(head, {"lowerLip", "lowerLipInner"});
+  const double half = 0.5 * (line_(stations - 1, 0) - line_(0, 0));
+  const double centre = 0.5 * (line_(stations - 1, 0) + line_(0, 0));
+  for (Eigen::Index i = 0; i < head.skin_vertices.size(); ++i) {
+    const int v = head.skin_vertices[i];
+    const Vector3d X = head.volume.V.row(v).transpose();
+    const double distance = std::sqrt((line_.rowwise() - X.transpose()).rowwise().squaredNorm().minCoeff());
+    nearness_[v] = 1 - smoothstep(0.003, 0.008, distance);
+    const double grip = std::pow(1 - smoothstep(0.002, 0.016, distance), 2);
+    if (grip <= 0 || head.carrier[v] != static_cast<int>(Carrier::flesh)) continue;
+    LipVertex entry{v, std::clamp((X.x() - centre) / half, -1.2, 1.2), grip, 0, 0, 0, true, X};
+    entry.follow = 1 - smoothstep(0.002, 0.024, distance);
+    entry.near = 1 - smoothstep(0.001, 0.022, distance);
+    entry.lip = 1 - smoothstep(0.005, 0.012, distance);
+    const Frame frame = frame_at(entry.along);
+    const auto k = static_cast<std::size_t>(i);
+    entry.upper = in_upper[k] || (!in_lower[k] && (X - frame.middle).dot(frame.up) > 0);
+    vertices_.push_back(entry);
+  }
+}
+
+LipControl::Frame LipControl::frame_at(double along) const {
+  const double at = (std::clamp(along, -1.0, 1.0) + 1) / 2 * (stations - 1);
+  const auto i = std::min(static_cast<Eigen::Index>(at), Eigen::Index{stations - 2});
+  const double t = at - static_cast<double>(i);
+  Frame f;
+  f.middle = ((1 - t) * line_.row(i) + t * line_.row(i + 1)).transpose();
+  const Eigen::Index a = std::max<Eigen::Index>(i - 3, 0), b = std::min<Eigen::Index>(i + 4, stations - 1);
+  f.along = (line_.row(b) - line_.row(a)).transpose().normalized();
+  f.out = f.along.cross(Vector3d::UnitY()).normalized();
+  if (f.out.z() < 0) f.out = -f.out;
+  f.up = f.out.cross(f.along).normalized();
+  if (f.up.y() < 0) f.up = -f.up;
+  return f;
+}
+
+std::vector<Handle> LipControl::handles(const ExpressionRecipe& recipe, const Eigen::Isometry3d& jaw) const {
+  std::vector<Handle> result;
+  const double mm = 1e-3;
+  for (const LipVertex& v : vertices_) {
+    const LipMotion& motion = v.upper ? recipe.upper_lip : recipe.lower_lip;
+    const double side = recipe.paired && !recipe.both_halves ? smoothstep(-0.3, 0.35, v.along) : 1;
+    const double q = std::min(1.0, v.along * v.along);
+    double weight = recipe.sealed ? 4 * v.grip + 6 * nearness_[v.vertex] : motion.hold * v.grip * side;
+    if (recipe.open > 0 && !recipe.sealed) weight *= 1 - q;  // the corners are free on an open jaw
+    if (weight <= 0) continue;
+    const LipSection m = section(motion, v.along);
+    const Frame f = frame_at(v.along);
+    const Vector3d axis_point = f.middle - 4 * mm * f.out + (v.upper ? 3 : -3) * mm * f.up;
+    const double roll = (v.upper ? -1 : 1) * side * v.lip * m.roll * std::numbers::pi / 180;
+    const Vector3d rolled = axis_point + Eigen::AngleAxisd(roll, f.along) * (v.rest - axis_point);
+    const Vector3d forward = (f.out + 2 * Vector3d::UnitZ()).normalized();
+    const double sideways = std::clamp(4 * v.along, -1.0, 1.0);
+    const Vector3d way = m.up * f.up + m.out * forward + (m.wide * sideways + m.left) * Vector3d::UnitX();
+    const Vector3d moved = rolled + side * v.follow * mm * way;
+    // The lower lip rides on the jaw, less so towards the corners; sealed lips meet halfway, their surroundings less.
+    const double ride = recipe.sealed ? (v.upper ? 0.42 * v.near : 1 - 0.58 * v.near)
+                        : v.upper     ? 0.45 * q * q
+                                      : 1 - 0.55 * q * q;
+    result.push_back({v.vertex, (1 - ride) * moved + ride * (jaw * moved), weight});
+  }
+  return result;
+}
+
+}  // namespace phiz

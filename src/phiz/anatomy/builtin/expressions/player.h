@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Plays one expression recipe on a head: muscles, lips, lids, jaw and air act, the flesh follows.
+#pragma once
+
+#include "phiz/anatomy/builtin/expressions/contact.h"
+#include "phiz/anatomy/builtin/expressions/flesh.h"
+#include "phiz/anatomy/builtin/expressions/lids.h"
+#include "phiz/anatomy/builtin/expressions/lips.h"
+#include "phiz/anatomy/builtin/expressions/pulls.h"
+#include "phiz/anatomy/builtin/expressions/recipes.h"
+#include "phiz/anatomy/builtin/proportions.h"
+#include "phiz/anatomy/head_template.h"
+
+namespace phiz {
+
+class ExpressionPlayer {
+ public:
+  /// Keeps references to both arguments. Throws phiz::Error naming what the head lacks.
+  ExpressionPlayer(const HeadTemplate& head, const Proportions& proportions);
+
+  /// Displacement of every vertex of head.skin, metres. A paired recipe acts on the left side.
+  MatrixX3d play(const ExpressionRecipe& recipe) const;
+
+ private:
+  const HeadTemplate& head_;
+  const Proportions& proportions_;
+  FleshPoser poser_;
+  MusclePulls pulls_;
+  LipControl lips_;
+  LidControl left_lids_, right_lids_;
+  PatchContact lip_contact_, left_lid_contact_;  // only left lids are played
+  std::vector<std::vector<int>> neighbours_;     ///< of the vertices of head.skin
+};
+
+}  // namespace phiz

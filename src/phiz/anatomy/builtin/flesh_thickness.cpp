@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "phiz/anatomy/builtin/flesh_thickness.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "phiz/geometry/spatial_query.h"
+#include "phiz/geometry/surface.h"
+#include "phiz/geometry/topology.h"
+
+namespace phiz {
+
+std::vector<ThicknessSite> thickness_sites(const Proportions& p) {
+  const double mm = 1e-3;
+  const auto midline = [](const Vector2d& q) { return Vector3d(0, q.x(), q.y()); };
+  const auto between = [](const Vector2d& a, const Vector2d& b, double t) { return Vector2d((1 - t) * a + t * b); };
+  std::vector<ThicknessSite> sites{
+      {"vertex", midline(p.vertex), 5.0 * mm, false},
+      {"opisthocranion", midline(p.opisthocranion), 6.5 * mm, false},
+      {"trichion", midline(p.trichion), 5.0 * mm, false},
+      {"glabella", midline(p.glabella), 5.5 * mm, false},
+      {"nasion", midline(p.nasion), 6.0 * mm, false},
+      {"rhinion", midline(between(p.nasion, p.pronasale, 0.5)), 3.0 * mm, false},
+      {"subnasale", midline(p.subnasale), 12.0 * mm, false},
+      {"pogonion", midline(p.pogonion), 10.5 * mm, true},
+      {"gnathion", midline(between(p.pogonion, p.menton, 0.6)), 8.5 * mm, true},
+      {"menton", midline(p.menton), 7.0 * mm, true},
+  };
+  const Vector3d eye = p.eye_centre, outer = p.exocanthion, zyg = p.zygion, jaw = p.gonion;
+  const Vector3d chin(0.022, p.menton.x() + 2 * mm, p.menton.y() - 10 * mm);
+  const std::vector<ThicknessSite> left{
+      {"frontalEminence", {0.030, p.trichion.x() - 10 * mm, p.trichion.y() - 4 * mm}, 5.0 * mm, false},
+      {"midSupraorbital", {eye.x(), p.glabella.x(), p.glabella.y() - 6 * mm}, 6.5 * mm, false},
+      {"midInfraorbital", {eye.x(), eye.y() - 20 * mm, eye.z() + 9 * mm}, 7.0 * mm, false},
+      {"alarCurvature", {p.alare.x() + 4 * mm, p.alare.y(), p.alare.z() - 8 * mm}, 9.5 * mm, false},
+      {"lateralOrbit", {outer.x() + 9 * mm, outer.y(), outer.z() - 8 * mm}, 6.5 * mm, false},
+      {"temple", {0.93 * zyg.x(), eye.y() + 18 * mm, zyg.z()}, 10.0 * mm, false},
+      {"zygion", zyg, 6.0 * mm, false},
+      {"euryon", p.euryon, 6.0 * mm, false},
+      {"midRamus", {1.12 * jaw.x(), 0.5 * jaw.y(), jaw.z() + 8 * mm}, 10.0 * mm, true},
+      {"gonion", jaw, 8.0 * mm, true},
+      {"midMandibularBorder", 0.5 * (jaw + chin), 8.5 * mm, true},
+  };
+  for (const ThicknessSite& site : left) {
+    sites.push_back({site.name + "Left", site.skin, site.thickness, site.on_mandible});
+    const Vector3d image(-site.skin.x(), site.skin.y(), site.skin.z());
+    sites.push_back({site.name + "Right", image, site.thickness, site.on_mandible});
+  }
+  return sites;
+}
+
+double ThicknessField::operator()(const Vector3d& p) const {
+  double sum = 0, weights = 0;
+  for (const ThicknessSite& site : sites_) {
+    const double square = (p - site.skin).squaredNorm() + 1e-6;
+    const double weight = 1 / (square * square);
+    sum += weight * site.thickness;
+    weights += weight;
+  }
+  return sum / weights;
+}
+
+std::vector<SkullLandmark> find_skull_landmarks(const HeadTemplate& head, const Proportions& proportions) {
+  const TriangleMesh skin{head.volume.V, head.skin_triangles, {}, {}};
+  const SurfaceQuery skin_query(skin);
+  const MatrixX3d skin_normals = vertex_normals(skin.V, skin.F);
+  const MatrixX3i skull = region_boundary(head.volume, Tissue::skull);
+  const MatrixX3i mandible = region_boundary(head.volume, Tissue::mandible);
+  const MatrixX3d skull_normals = vertex_normals(head.volume.V, skull);
+  const MatrixX3d mandible_normals = vertex_normals(head.volume.V, mandible);
+  std::vector<SkullLandmark> landmarks;
+  for (const ThicknessSite& site : thickness_sites(proportions)) {
+    const SurfacePoint above = skin_query.closest_point(site.skin);
+    Vector3d outward = Vector3d::Zero();
+    for (int k = 0; k < 3; ++k)
+      outward += above.barycentric(k) * skin_normals.row(skin.F(above.triangle, k)).transpose();
+    outward.normalize();
+    const Vector3d expected = above.position - site.thickness * outward;
+    // The bone vertex that is near the expected place and faces the skin there.
+    const MatrixX3i& F = site.on_mandible ? mandible : skull;
+    const MatrixX3d& normals = site.on_mandible ? mandible_normals : skull_normals;
+    int best = -1;
+    double least = std::numeric_limits<double>::max();
+    for (Eigen::Index f = 0; f < F.rows(); ++f) {
+      for (int k = 0; k < 3; ++k) {
+        const int v = F(f, k);
+        const double facing = normals.row(v).dot(outward);
+        const double cost = (head.volume.V.row(v).transpose() - expected).norm() * (2 - facing);
+        if (facing > 0.3 && cost < least) least = cost, best = v;
+      }
+    }
+    if (best < 0) continue;
+    SkullLandmark landmark;
+    landmark.name = site.name;
+    landmark.bone_vertex = best;
+    landmark.normal = normals.row(best);
+    const auto hit = skin_query.first_hit(head.volume.V.row(best), landmark.normal, 0, 0.05);
+    if (!hit || hit->t > 2 * site.thickness + 0.003) continue;
+    landmark.thickness_mean = hit->t;
+    landmark.thickness_deviation = std::max(0.0015, 0.3 * hit->t);
+    Eigen::Index corner = 0;
+    hit->barycentric.maxCoeff(&corner);
+    // Vertices of the simulation skin come first in the volume and have the same rows in the drawn skin.
+    landmark.skin_vertex = skin.F(hit->triangle, corner);
+    landmarks.push_back(landmark);
+  }
+  return landmarks;
+}
+
+}  // namespace phiz

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Flesh thickness at craniometric landmarks (Ichim et al. 2017, section 5.3.1; values after Stephan and Simpson 2008,
+/// doi 10.1111/j.1556-4029.2008.00852.x, rounded).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "phiz/anatomy/builtin/proportions.h"
+#include "phiz/anatomy/head_template.h"
+
+namespace phiz {
+
+/// A place on the skin and the usual thickness of the flesh under it, metres.
+struct ThicknessSite {
+  std::string name;
+  Vector3d skin;     ///< on the skin, or close to it
+  double thickness;  ///< towards the bone
+  bool on_mandible;
+};
+
+/// Sites of a person: midline ones, then left and right pairs (names end in Left or Right). At least 16.
+std::vector<ThicknessSite> thickness_sites(const Proportions& proportions);
+
+/// Thickness anywhere near the skin, interpolated between the sites (inverse fourth power of the distance).
+class ThicknessField {
+ public:
+  explicit ThicknessField(const Proportions& proportions) : sites_(thickness_sites(proportions)) {}
+  double operator()(const Vector3d& p) const;
+
+ private:
+  std::vector<ThicknessSite> sites_;
+};
+
+/// The skull landmarks of `head`, which has its volume, carriers and skin: for each site the bone vertex below it, its
+/// normal, the thickness along the normal up to the skin, as this head has it, and a deviation of 30 % (at least
+/// 1.5 mm). Sites without bone in their place are left out.
+std::vector<SkullLandmark> find_skull_landmarks(const HeadTemplate& head, const Proportions& proportions);
+
+}  // namespace phiz

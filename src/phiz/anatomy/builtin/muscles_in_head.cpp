@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "phiz/anatomy/builtin/expressions/skin.h"
+#include "phiz/anatomy/builtin/muscles.h"
+#include "phiz/core/parallel.h"
+#include "phiz/geometry/spatial_query.h"
+
+namespace phiz {
+namespace {
+
+constexpr double deepest = 0.014;  ///< metres below the skin
+
+/// Skin that is not the outside of the face.
+const std::vector<std::string> inner_skin = {"mouthBag",      "oralRoof",   "oralFloor",   "upperLipInner",
+                                             "lowerLipInner", "leftSocket", "rightSocket", "leftNostril",
+                                             "rightNostril",  "neckCap"};
+
+/// The outside of the face and what lies under it (bones and inner skin), as a surface and as points.
+struct Layers {
+  SurfaceQuery skin;
+  MatrixX3d floor;
+
+  explicit Layers(const HeadTemplate& head) : skin(head.volume.V, outer_triangles(head)) {
+    std::vector<char> under(static_cast<std::size_t>(head.volume.V.rows()), 0);
+    for (Eigen::Index v = 0; v < head.carrier.size(); ++v)
+      if (head.carrier[v] != static_cast<int>(Carrier::flesh)) under[static_cast<std::size_t>(v)] = 1;
+    const std::vector<char> inner = simulation_mask(head, inner_skin);
+    for (std::size_t i = 0; i < inner.size(); ++i) {
+      const auto v = static_cast<std::size_t>(head.skin_vertices[static_cast<Eigen::Index>(i)]);
+      under[v] = inner[i];  // carried skin (the neck cap) is no floor unless it is inner skin
+    }
+    floor.resize(std::count(under.begin(), under.end(), 1), 3);
+    Eigen::Index row = 0;
+    for (std::size_t v = 0; v < under.size(); ++v)
+      if (under[v]) floor.row(row++) = head.volume.V.row(static_cast<Eigen::Index>(v));
+  }
+
+  static MatrixX3i outer_triangles(const HeadTemplate& head) {
+    std::vector<char> inner(static_cast<std::size_t>(head.volume.V.rows()), 0);
+    const std::vector<char> mask = simulation_mask(head, inner_skin);
+    for (std::size_t i = 0; i < mask.size(); ++i)
+      inner[static_cast<std::size_t>(head.skin_vertices[static_cast<Eigen::Index>(i)])] = mask[i];
+    std::vector<int> kept;
+    for (int f = 0; f < head.skin_triangles.rows(); ++f) {
+      const auto t = head.skin_triangles.row(f);
+      if (!inner[static_cast<std::size_t>(t[0])] && !inner[static_cast<std::size_t>(t[1])] &&
+          !inner[static_cast<std::size_t>(t[2])])
+        kept.push_back(f);
+    }
+    return head.skin_triangles(kept, Eigen::all);
+  }
+
+  /// The point under p at `depth` between floor (0) and skin (1).
+  Vector3d settle(const Vector3d& p, double depth) const {
+    const Vector3d top = skin.closest_point(p).position;
+    if (floor.rows() == 0) return top;
+    Eigen::Index nearest = 0;
+    (floor.rowwise() - top.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
+    const Vector3d down = floor.row(nearest).transpose() - top;
+    return top + down * std::min(1.0, deepest / std::max(down.norm(), 1e-9)) * (1 - depth);
+  }
+};
+
+/// 35 points spread evenly over a tet: the centroids of a regular subdivision.
+std::vector<Eigen::Vector4d> sample_points() {
+  constexpr int n = 4;
+  std::vector<Eigen::Vector4d> points;
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; i + j <= n; ++j)
+      for (int k = 0; i + j + k <= n; ++k)
+        points.push_back((Eigen::Vector4d(i, j, k, n - i - j - k).array() + 0.25).matrix() / (n + 1));
+  return points;
+}
+
+/// Distance from p to a polyline, squared, and the unit direction of the nearest piece.
+double distance_squared(const MatrixX3d& fibre, const Vector3d& p, Vector3d& direction) {
+  double best = 1e30;
+  for (Eigen::Index i = 0; i + 1 < fibre.rows(); ++i) {
+    const Vector3d a = fibre.row(i), e = fibre.row(i + 1).transpose() - a;
+    const double t = std::clamp((p - a).dot(e) / std::max(e.squaredNorm(), 1e-18), 0.0, 1.0);
+    const double d = (a + t * e - p).squaredNorm();
+    if (d < best) {
+      best = d;
+      direction = e.normalized();
+    }
+  }
+  return best;
+}
+
+Muscle fill(const HeadTemplate& head, const MuscleBundle& bundle, const std::vector<Eigen::Vector4d>& samples) {
+  Eigen::AlignedBox3d box;
+  for (const MatrixX3d& fibre : bundle.fibres)
+    for (Eigen::Index i = 0; i < fibre.rows(); ++i) box.extend(Vector3d(fibre.row(i)));
+  const Eigen::AlignedBox3d reach(box.min().array() - bundle.radius, box.max().array() + bundle.radius);
+  std::vector<int> tets;
+  std::vector<double> shares;
+  std::vector<Vector3d> directions;
+  const double limit = bundle.radius * bundle.radius;
+  for (int t = 0; t < head.volume.T.rows(); ++t) {
+    if (head.volume.region[t] != Tissue::flesh) continue;
+    Eigen::Matrix<double, 3, 4> corners;
+    Eigen::AlignedBox3d tet;
+    for (int k = 0; k < 4; ++k) {
+      corners.col(k) = head.volume.V.row(head.volume.T(t, k)).transpose();
+      tet.extend(Vector3d(corners.col(k)));
+    }
+    if (!reach.intersects(tet)) continue;
+    int inside = 0;
+    Matrix3d spread = Matrix3d::Zero();
+    Vector3d towards_insertion = Vector3d::Zero();
+    for (const Eigen::Vector4d& s : samples) {
+      const Vector3d p = corners * s;
+      double best = limit;
+      Vector3d along = Vector3d::Zero();
+      for (const MatrixX3d& fibre : bundle.fibres) {
+        Vector3d direction;
+        const double d = distance_squared(fibre, p, direction);
+        if (d < best) {
+          best = d;
+          along = direction;
+        }
+      }
+      if (along.isZero()) continue;
+      ++inside;
+      spread += along * along.transpose();
+      towards_insertion = along;
+    }
+    if (inside == 0) continue;
+    tets.push_back(t);
+    shares.push_back(inside / double(samples.size()));
+    Eigen::SelfAdjointEigenSolver<Matrix3d> axes;
+    axes.computeDirect(spread);
+    const Vector3d axis = axes.eigenvectors().col(2).normalized();
+    directions.push_back(axis.dot(towards_insertion) < 0 ? Vector3d(-axis) : axis);
+  }
+  Muscle muscle;
+  muscle.name = bundle.name;
+  muscle.fibres = bundle.fibres;
+  const auto n = static_cast<Eigen::Index>(tets.size());
+  muscle.tets = Eigen::Map<VectorXi>(tets.data(), n);
+  muscle.fraction = Eigen::Map<VectorXd>(shares.data(), n);
+  muscle.direction.resize(n, 3);
+  for (Eigen::Index i = 0; i < n; ++i) muscle.direction.row(i) = directions[static_cast<std::size_t>(i)].transpose();
+  return muscle;
+}
+
+}  // namespace
+
+void settle_muscles(std::vector<MuscleBundle>& muscles, const HeadTemplate& head) {
+  const Layers layers(head);
+  parallel_for(
+      static_cast<std::ptrdiff_t>(muscles.size()),
+      [&](std::ptrdiff_t m) {
+        MuscleBundle& bundle = muscles[static_cast<std::size_t>(m)];
+        for (MatrixX3d& fibre : bundle.fibres) {
+          const Eigen::Index last = fibre.rows() - 1;
+          for (Eigen::Index i = 0; i <= last; ++i) {
+            const double t = double(i) / static_cast<double>(last);
+            const double depth = (1 - t) * bundle.origin_depth + t * bundle.insertion_depth;
+            fibre.row(i) = layers.settle(fibre.row(i), depth).transpose();
+          }
+          const bool closed = (fibre.row(0) - fibre.row(last)).norm() < 1e-9;
+          for (int pass = 0; pass < 3; ++pass) {
+            const MatrixX3d before = fibre;
+            for (Eigen::Index i = 1; i < last; ++i)
+              fibre.row(i) = 0.5 * before.row(i) + 0.25 * (before.row(i - 1) + before.row(i + 1));
+            if (closed)
+              fibre.row(0) = fibre.row(last) = 0.5 * before.row(0) + 0.25 * (before.row(1) + before.row(last - 1));
+          }
+        }
+      },
+      1);
+}
+
+void assign_muscles(HeadTemplate& head, const std::vector<MuscleBundle>& muscles) {
+  const std::vector<Eigen::Vector4d> samples = sample_points();
+  head.muscles.resize(muscles.size());
+  parallel_for(
+      static_cast<std::ptrdiff_t>(muscles.size()),
+      [&](std::ptrdiff_t m) {
+        const auto i = static_cast<std::size_t>(m);
+        head.muscles[i] = fill(head, muscles[i], samples);
+      },
+      1);
+  VectorXd total = VectorXd::Zero(head.volume.T.rows());
+  for (const Muscle& muscle : head.muscles)
+    for (Eigen::Index i = 0; i < muscle.tets.size(); ++i) total[muscle.tets[i]] += muscle.fraction[i];
+  for (Muscle& muscle : head.muscles)
+    for (Eigen::Index i = 0; i < muscle.tets.size(); ++i) muscle.fraction[i] /= std::max(1.0, total[muscle.tets[i]]);
+}
+
+}  // namespace phiz

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "phiz/anatomy/builtin/skin/identity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "phiz/core/error.h"
+#include "phiz/core/random.h"
+
+namespace phiz {
+
+using P = IdentityParameters;
+const std::array<IdentityParameterName, identity_parameter_count> identity_parameter_names = {{
+    {"head_length", &P::head_length},
+    {"head_width", &P::head_width},
+    {"head_height", &P::head_height},
+    {"face_width", &P::face_width},
+    {"face_length", &P::face_length},
+    {"forehead_slope", &P::forehead_slope},
+    {"brow_ridge", &P::brow_ridge},
+    {"eye_spacing", &P::eye_spacing},
+    {"eye_size", &P::eye_size},
+    {"eye_tilt", &P::eye_tilt},
+    {"eye_depth", &P::eye_depth},
+    {"nose_length", &P::nose_length},
+    {"nose_width", &P::nose_width},
+    {"nose_projection", &P::nose_projection},
+    {"nose_bridge", &P::nose_bridge},
+    {"nose_tip", &P::nose_tip},
+    {"cheekbones", &P::cheekbones},
+    {"cheek_fullness", &P::cheek_fullness},
+    {"mouth_width", &P::mouth_width},
+    {"upper_lip", &P::upper_lip},
+    {"lower_lip", &P::lower_lip},
+    {"philtrum", &P::philtrum},
+    {"jaw_width", &P::jaw_width},
+    {"chin_height", &P::chin_height},
+    {"chin_projection", &P::chin_projection},
+    {"ear_size", &P::ear_size},
+    {"ear_flare", &P::ear_flare},
+    {"neck_thickness", &P::neck_thickness},
+    {"fat", &P::fat},
+}};
+
+IdentityParameters random_identity(std::uint64_t seed) {
+  Random random(seed, 0x5eed);
+  IdentityParameters identity;
+  for (const auto& parameter : identity_parameter_names)
+    identity.*parameter.value = std::clamp(random.normal(), -2.0, 2.0);
+  return identity;
+}
+
+Proportions personalise(const Proportions& mean, const IdentityParameters& q) {
+  for (const auto& parameter : identity_parameter_names) {
+    const double value = q.*parameter.value;
+    if (!std::isfinite(value) || std::abs(value) > 4)
+      reject("identity parameter " + std::string(parameter.name),
+             "it must be a number between -4 and 4 (standard deviations)");
+  }
+  constexpr double mm = 1e-3;
+  Proportions p = mean;
+  // Vault.
+  p.opisthocranion.y() -= 5 * mm * q.head_length;
+  p.euryon.x() += 3 * mm * q.head_width;
+  p.vertex.x() += 4 * mm * q.head_height;
+  p.trichion += Vector2d(2 * q.head_height, -2.0 * q.forehead_slope) * mm;
+  p.glabella.y() += (1.0 * q.brow_ridge - 0.3 * q.forehead_slope) * mm;
+  // Width of the face.
+  p.zygion.x() += 2.6 * mm * q.face_width;
+  p.tragion.x() += 2.2 * mm * q.face_width;
+  p.condyle.x() += 1.6 * mm * q.face_width;
+  p.gonion.x() += (2.6 * q.jaw_width + 1.0 * q.face_width) * mm;
+  // Eyes.
+  const Vector3d spacing(1.2 * mm * q.eye_spacing + 0.5 * mm * q.face_width, 0, -0.9 * mm * q.eye_depth);
+  p.eye_centre += spacing;
+  p.endocanthion += spacing + Vector3d(-0.3, -0.3 * q.eye_tilt, 0) * mm * 1.0;
+  p.exocanthion += spacing + Vector3d(0.0, 0.8 * q.eye_tilt, 0) * mm;
+  p.endocanthion.x() += 0.3 * mm;
+  // Lower face hangs together: everything below the nose moves with the length of the face.
+  const double nose_down = 1.5 * mm * q.nose_length, face_down = 2.2 * mm * q.face_length + 0.6 * nose_down;
+  p.pronasale += Vector2d(-nose_down + 1.2 * mm * q.nose_tip - 0.3 * mm * q.face_length, 1.7 * mm * q.nose_projection);
+  p.subnasale += Vector2d(-0.8 * nose_down - 0.3 * face_down, 0.4 * mm * q.nose_projection);
+  p.alare += Vector3d(1.4 * q.nose_width * mm, -0.9 * nose_down - 0.25 * face_down, 0.2 * mm * q.nose_projection);
+  const double lip_down = 0.5 * face_down + 0.7 * mm * q.philtrum, chin_down = face_down + 1.3 * mm * q.chin_height;
+  p.labrale_superius.x() -= lip_down;
+  p.stomion.x() -= lip_down;
+  p.labrale_inferius.x() -= lip_down;
+  p.sublabiale.x() -= lip_down + 0.3 * (chin_down - lip_down);
+  p.cheilion += Vector3d(1.5 * q.mouth_width * mm, -lip_down, -0.35 * q.mouth_width * mm);
+  p.pogonion += Vector2d(-0.75 * chin_down, 2.0 * mm * q.chin_projection);
+  p.menton += Vector2d(-chin_down, 1.8 * mm * q.chin_projection);
+  p.gonion.y() -= 0.5 * face_down;
+  // Teeth keep with the lips.
+  auto& arch = p.arch;
+  for (double* y :
+       {&arch.upper_gum, &arch.upper_edge, &arch.lower_edge, &arch.lower_gum, &arch.upper_sulcus, &arch.lower_sulcus})
+    *y -= lip_down;
+  arch.upper_sulcus += 0.3 * lip_down;
+  arch.half_width += 0.3 * mm * q.face_width;
+  return p;
+}
+
+}  // namespace phiz
