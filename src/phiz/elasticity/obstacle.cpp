@@ -113,13 +113,19 @@ std::optional<SignedContact> Obstacle::closest(const Vector3d& point, double rea
   contact.triangle = f;
   contact.barycentric = near->barycentric;
   Vector3d normal = face_normal(f);
+  constexpr double crease = 0.5;  // 151 degrees between the normals
   const int zeros = static_cast<int>((near->barycentric.array() == 0).count());
   if (zeros == 1) {
     for (int k = 0; k < 3; ++k) {
       if (near->barycentric[(k + 2) % 3] != 0) continue;
       const int across = neighbours_(f, k);
       contact.on_rim = across < 0;
-      if (across >= 0) normal = (normal + face_normal(across)).normalized();
+      if (across < 0) continue;
+      normal += face_normal(across);
+      // The faces of a sharp crease almost cancel, and cross where it is pressed flat: its surroundings tell the sides.
+      if (normal.norm() < crease)
+        for (const int end : {k, (k + 1) % 3}) normal += near->barycentric[end] * vertex_normal(F_(f, end));
+      normal.normalize();
     }
   } else if (zeros == 2) {
     Eigen::Index k = 0;
@@ -141,6 +147,7 @@ std::optional<SignedContact> Obstacle::closest(const Vector3d& point, double rea
 
 std::vector<SignedContact> Obstacle::beside(const Vector3d& point, const SignedContact& closest, double reach) const {
   constexpr double same_plane = 0.9995, other_side = -0.2;
+  constexpr double behind = 1e-5;  // metres
   constexpr std::size_t most = 2;
   const Vector3d p = is_rigid() ? Vector3d(transform_.inverse() * point) : point;
   const auto local = [&](const Vector3d& n) { return is_rigid() ? Vector3d(transform_.linear().transpose() * n) : n; };
@@ -166,6 +173,8 @@ std::vector<SignedContact> Obstacle::beside(const Vector3d& point, const SignedC
     contact.barycentric = w;
     contact.normal = n;
     contact.gap = n.dot(p - at);
+    // Behind its plane the face can only be left beside it: it is no wall for this point.
+    if (contact.gap < std::min(0.0, closest.gap) - behind) continue;
     candidates.push_back({distance, contact, (a + b + c) / 3, at});
   }
   std::stable_sort(candidates.begin(), candidates.end(),
