@@ -74,7 +74,7 @@ void run_volumetric(const BenchArguments& arguments) {
   const FaceModel model = bench_model(arguments);
   VolumetricBenchOptions options;
   options.frames = arguments.frames > 0 ? arguments.frames : arguments.quick ? 40 : 240;
-  options.reference_frames = arguments.quick ? 0 : 4;
+  options.reference_frames = arguments.quick ? 0 : 12;
   options.thread_scaling = !arguments.quick;
   const Performance performance = arguments.performance.empty() ? bench_performance(options.frames)
                                                                 : read_live_link(arguments.performance).performance;

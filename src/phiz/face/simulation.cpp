@@ -13,6 +13,7 @@
 #include "phiz/face/flesh.h"
 #include "phiz/face/head_contacts.h"
 #include "phiz/face/take.h"
+#include "phiz/geometry/folds.h"
 #include "phiz/geometry/operators.h"
 
 namespace phiz {
@@ -30,6 +31,17 @@ MatrixX3d as_stored(const MatrixX3d& x) {
   return x.cast<float>().cast<double>();
 }
 
+/// Flags of the drawn skin's vertices on the lips.
+std::vector<char> lips(const HeadTemplate& head) {
+  std::vector<char> flags(static_cast<std::size_t>(head.skin.V.rows()), 0);
+  for (const std::string region : {"upperLip", "lowerLip", "upperLipInner", "lowerLipInner"}) {
+    const auto found = head.skin_regions.find(region);
+    if (found == head.skin_regions.end()) continue;
+    for (const int v : found->second) flags[static_cast<std::size_t>(v)] = 1;
+  }
+  return flags;
+}
+
 }  // namespace
 
 struct Simulation::Parts {
@@ -42,6 +54,7 @@ struct Simulation::Parts {
   VectorXd share;               ///< of the jaw's motion, per vertex
   std::vector<MatrixX3f> lead;  ///< displacement per shape beyond the jaw's share
   MatrixX3d skin_rest;
+  FoldMender folds;
 
   MatrixX3d x;
   MatrixX3d velocity;
@@ -57,6 +70,7 @@ struct Simulation::Parts {
         solver(body(), contacts ? contacts->scene.candidates() : VectorXi()),
         blender(face, soft, slots()),
         share(jaw_share(face.head, soft)),
+        folds(face.head.skin, lips(face.head), -0.5),
         x(face.head.volume.V),
         weights(VectorXd::Zero(static_cast<Eigen::Index>(face.shapes.size()))) {
     if (options.dynamic) velocity = MatrixX3d::Zero(x.rows(), 3);
@@ -240,7 +254,13 @@ const MatrixX3d& Simulation::positions() const {
 MatrixX3d Simulation::skin() const {
   const HeadTemplate& head = parts_->model->head;
   const MatrixX3d moved = parts_->rows_of_skin(parts_->x) - parts_->skin_rest;
-  return head.skin.V + head.skin_interpolation * moved;
+  MatrixX3d drawn(head.skin.V.rows(), 3);
+  parallel_chunks(drawn.rows(), 2048, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    drawn.middleRows(begin, end - begin) =
+        head.skin.V.middleRows(begin, end - begin) + head.skin_interpolation.middleRows(begin, end - begin) * moved;
+  });
+  parts_->folds.mend(drawn);
+  return drawn;
 }
 
 JawPose Simulation::jaw() const {
