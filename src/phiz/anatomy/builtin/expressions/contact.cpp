@@ -13,8 +13,7 @@ namespace phiz {
 namespace {
 
 constexpr double deepest = 0.003;  ///< what lies deeper is on the far side of a patch, metres
-constexpr double gap = 0.00004;    ///< to leave between the patches, metres
-constexpr double facing = -0.1;    ///< greatest cosine between the normals of skin that touches
+constexpr double facing = -0.5;    ///< greatest cosine between the normals of skin that touches
 constexpr int rounds = 12;
 constexpr int reach = 10;  ///< rings of neighbours that follow
 
@@ -27,8 +26,9 @@ const VectorXi& region(const HeadTemplate& head, const std::string& name) {
 
 }  // namespace
 
-PatchContact::PatchContact(const HeadTemplate& head, const std::string& upper, const std::string& lower)
+PatchContact::PatchContact(const HeadTemplate& head, const std::string& upper, const std::string& lower, double gap)
     : rest_(head.skin.V),
+      gap_(gap),
       upper_(patch(head, region(head, upper), region(head, lower))),
       lower_(patch(head, region(head, lower), region(head, upper))) {
   const auto neighbours = vertex_neighbours(head.skin.F, static_cast<int>(rest_.rows()));
@@ -47,17 +47,21 @@ PatchContact::PatchContact(const HeadTemplate& head, const std::string& upper, c
 
 PatchContact::Patch PatchContact::patch(const HeadTemplate& head, const VectorXi& own, const VectorXi& other) const {
   std::vector<char> member(static_cast<std::size_t>(rest_.rows()), 0), shared = member, rim = member;
-  for (const int v : other) shared[static_cast<std::size_t>(v)] = 1;
-  for (const int v : own) member[static_cast<std::size_t>(v)] = 1;
+  std::vector<char> both = member;
+  for (const int v : other) shared[static_cast<std::size_t>(v)] = both[static_cast<std::size_t>(v)] = 1;
+  for (const int v : own) member[static_cast<std::size_t>(v)] = both[static_cast<std::size_t>(v)] = 1;
   Patch result;
   for (const int v : own)
     if (!shared[static_cast<std::size_t>(v)]) result.vertices.push_back(v);
   std::vector<int> faces;
-  const auto inside = [&](Eigen::Index f, int k) { return member[static_cast<std::size_t>(head.skin.F(f, k))] != 0; };
+  const auto inside = [&](const std::vector<char>& set, Eigen::Index f) {
+    int count = 0;
+    for (int k = 0; k < 3; ++k) count += set[static_cast<std::size_t>(head.skin.F(f, k))];
+    return count;
+  };
   for (int f = 0; f < head.skin.F.rows(); ++f) {
-    const int count = inside(f, 0) + inside(f, 1) + inside(f, 2);
-    if (count == 3) faces.push_back(f);
-    if (count == 1 || count == 2)
+    if (inside(member, f) == 3) faces.push_back(f);
+    if (inside(both, f) < 3)
       for (int k = 0; k < 3; ++k) rim[static_cast<std::size_t>(head.skin.F(f, k))] = 1;
   }
   result.triangles = head.skin.F(faces, Eigen::all);
@@ -65,7 +69,7 @@ PatchContact::Patch PatchContact::patch(const HeadTemplate& head, const VectorXi
     bool interior = true;
     for (int k = 0; k < 3; ++k) {
       const auto v = static_cast<std::size_t>(result.triangles(f, k));
-      interior = interior && !rim[v] && !shared[v];
+      interior = interior && !rim[v];
     }
     result.interior.push_back(interior);
   }
@@ -86,8 +90,8 @@ bool PatchContact::separate(const Patch& moving, const Patch& obstacle, const Ma
     for (int k = 0; k < 3; ++k) normal += hit->barycentric[k] * normals.row(corners[k]).transpose();
     normal.normalize();
     const double height = (x - hit->position).dot(normal);
-    if (height >= gap || own.row(v).dot(normal.transpose()) > facing) continue;
-    const Vector3d half = 0.5 * (gap - height) * normal;
+    if (height >= gap_ || own.row(v).dot(normal.transpose()) > facing) continue;
+    const Vector3d half = 0.5 * (gap_ - height) * normal;
     const auto keep_larger = [&](int row, const Vector3d& c) {
       if (c.squaredNorm() > correction.row(row).squaredNorm()) correction.row(row) = c.transpose();
     };

@@ -14,9 +14,9 @@
 namespace phiz {
 namespace {
 
-constexpr double rigidity = 1.0;           ///< weight of |F - R|^2
-constexpr double incompressibility = 2.0;  ///< weight of |F - P|^2, P the nearest matrix of determinant 1
-constexpr double dermis = 8;               ///< stiffness of tets with a face on the skin, relative to the flesh below
+constexpr double rigidity = 1.0;            ///< weight of |F - R|^2
+constexpr double incompressibility = 20.0;  ///< weight of |F - P|^2, P the nearest matrix of determinant 1
+constexpr double dermis = 8;                ///< stiffness of tets with a face on the skin, relative to the flesh below
 
 /// Rotation of the polar decomposition of F, from the estimate `q` (Mueller et al. 2016).
 void follow_rotation(const Matrix3d& F, Eigen::Quaterniond& q) {
@@ -152,7 +152,7 @@ const VectorXd& FleshPoser::jaw_share() const {
 }
 
 MatrixX3d FleshPoser::pose(const std::vector<Handle>& handles, const std::vector<Obstacle>& obstacles,
-                           const Eigen::Isometry3d& jaw, int iterations) const {
+                           const Eigen::Isometry3d& jaw, int iterations, const MatrixX3d& guess) const {
   const State& s = *state_;
   const auto n = static_cast<Eigen::Index>(s.free.size());
   VectorXd springs = VectorXd::Zero(n);
@@ -173,12 +173,10 @@ MatrixX3d FleshPoser::pose(const std::vector<Handle>& handles, const std::vector
 
   MatrixX3d X = s.carried(jaw);
   const MatrixX3d fixed_part = s.coupling * X;
-  const Eigen::Quaterniond opened(jaw.rotation());
-  const Eigen::AngleAxisd turn(opened);
   for (const int v : s.free) {  // the first guess turns every vertex by its share of the jaw's motion
     const Vector3d full = jaw * Vector3d(s.rest.row(v));
     const double w = s.jaw_share[v];
-    X.row(v) = ((1 - w) * Vector3d(s.rest.row(v)) + w * full).transpose();
+    X.row(v) = guess.rows() > 0 ? guess.row(v) : ((1 - w) * Vector3d(s.rest.row(v)) + w * full).transpose().eval();
   }
   const auto tets = static_cast<std::ptrdiff_t>(s.hats.size());
   std::vector<Eigen::Quaterniond> rotation(s.hats.size(), Eigen::Quaterniond::Identity());

@@ -38,9 +38,10 @@ class FleshPoser {
   FleshPoser(FleshPoser&&) noexcept;
   FleshPoser& operator=(FleshPoser&&) noexcept;
 
-  /// Positions of all vertices (metres, n x 3), after `iterations` local/global steps from a smooth first guess.
+  /// Positions of all vertices (metres, n x 3), after `iterations` local/global steps from `guess` (such positions),
+  /// or from a smooth first guess when it is empty.
   MatrixX3d pose(const std::vector<Handle>& handles, const std::vector<Obstacle>& obstacles,
-                 const Eigen::Isometry3d& jaw, int iterations) const;
+                 const Eigen::Isometry3d& jaw, int iterations, const MatrixX3d& guess = {}) const;
 
   /// Share with which each vertex follows the mandible: 1 on it, 0 on the skull, harmonic between (n).
   const VectorXd& jaw_share() const;

@@ -12,16 +12,20 @@ namespace phiz {
 namespace {
 
 constexpr int stations = 65;
+constexpr double meeting_share = 0.36;  ///< of the jaw's way down, at which sealed lips meet
+constexpr double retreat_share = 0.15;  ///< of its way back: the upper teeth hold them in front
 
-/// Through the values at the centre, halfway and the corner; even and smooth across the centre.
+/// Through the values at the centre, halfway and the corner; even and smooth across the centre, but for `wide`, which
+/// is odd: positive to the person's left.
 LipSection section(const LipMotion& m, double along) {
   const double q = std::min(1.0, along * along), a = (1 - q) * (0.25 - q) / 0.25, b = q * (1 - q) / 0.1875,
                c = q * (q - 0.25) / 0.75;
   const auto mix = [&](double LipSection::*field) {
     return a * m.centre.*field + b * m.middle.*field + c * m.corner.*field;
   };
-  return {mix(&LipSection::up), mix(&LipSection::out), mix(&LipSection::wide), mix(&LipSection::left),
-          mix(&LipSection::roll)};
+  const double near = (m.middle.wide - 0.125 * m.corner.wide) / 0.375, far = m.corner.wide - near;
+  return {mix(&LipSection::up),   mix(&LipSection::out),  std::clamp(along, -1.0, 1.0) * (near + far * q),
+          mix(&LipSection::left), mix(&LipSection::roll), mix(&LipSection::thin)};
 }
 
 /// A curve from corner to corner resampled at `stations` places, even in x, right corner first.
@@ -50,6 +54,11 @@ LipControl::LipControl(const HeadTemplate& head) {
   nearness_.setZero(head.volume.V.rows());
   const std::vector<char> in_upper = simulation_mask(head, {"upperLip", "upperLipInner"});
   const std::vector<char> in_lower = simulation_mask(head, {"lowerLip", "lowerLipInner"});
+  const std::vector<char> red = simulation_mask(head, {"upperLip", "lowerLip"});
+  std::vector<int> red_vertices;
+  for (std::size_t i = 0; i < red.size(); ++i)
+    if (red[i]) red_vertices.push_back(head.skin_vertices[static_cast<Eigen::Index>(i)]);
+  const MatrixX3d red_points = head.volume.V(red_vertices, Eigen::all);
   const double half = 0.5 * (line_(stations - 1, 0) - line_(0, 0));
   const double centre = 0.5 * (line_(stations - 1, 0) + line_(0, 0));
   for (Eigen::Index i = 0; i < head.skin_vertices.size(); ++i) {
@@ -59,12 +68,15 @@ LipControl::LipControl(const HeadTemplate& head) {
     nearness_[v] = 1 - smoothstep(0.003, 0.008, distance);
     const double grip = std::pow(1 - smoothstep(0.002, 0.016, distance), 2);
     if (grip <= 0 || head.carrier[v] != static_cast<int>(Carrier::flesh)) continue;
-    LipVertex entry{v, std::clamp((X.x() - centre) / half, -1.2, 1.2), grip, 0, 0, 0, true, X};
+    LipVertex entry{v, std::clamp((X.x() - centre) / half, -1.2, 1.2), grip, 0, 0, true, X};
     entry.follow = 1 - smoothstep(0.002, 0.024, distance);
-    entry.near = 1 - smoothstep(0.001, 0.022, distance);
-    entry.lip = 1 - smoothstep(0.005, 0.012, distance);
-    const Frame frame = frame_at(entry.along);
     const auto k = static_cast<std::size_t>(i);
+    entry.lip =
+        red[k] ? 1
+               : 1 - smoothstep(0, 0.007,
+                                std::sqrt((red_points.rowwise() - X.transpose()).rowwise().squaredNorm().minCoeff()));
+    if (X.z() < frame_at(entry.along).middle.z()) entry.lip *= 1 - smoothstep(0.007, 0.015, distance);
+    const Frame frame = frame_at(entry.along);
     entry.upper = in_upper[k] || (!in_lower[k] && (X - frame.middle).dot(frame.up) > 0);
     vertices_.push_back(entry);
   }
@@ -85,29 +97,40 @@ LipControl::Frame LipControl::frame_at(double along) const {
   return f;
 }
 
+Handle LipControl::sealed(const LipVertex& v, const Eigen::Isometry3d& jaw) const {
+  const Vector3d middle = frame_at(v.along).middle;
+  const Vector3d way = jaw * middle - middle;
+  const Vector3d meeting = middle + Vector3d(meeting_share * way.x(), meeting_share * way.y(), retreat_share * way.z());
+  const Eigen::AngleAxisd opening(jaw.rotation());
+  const Eigen::AngleAxisd tilt((v.upper ? meeting_share : 0.7) * opening.angle(), opening.axis());
+  return {v.vertex, meeting + tilt * (v.rest - middle), 6 * v.grip};
+}
+
 std::vector<Handle> LipControl::handles(const ExpressionRecipe& recipe, const Eigen::Isometry3d& jaw) const {
   std::vector<Handle> result;
   const double mm = 1e-3;
   for (const LipVertex& v : vertices_) {
+    if (recipe.sealed) {
+      result.push_back(sealed(v, jaw));
+      continue;
+    }
     const LipMotion& motion = v.upper ? recipe.upper_lip : recipe.lower_lip;
     const double side = recipe.paired && !recipe.both_halves ? smoothstep(-0.3, 0.35, v.along) : 1;
     const double q = std::min(1.0, v.along * v.along);
-    double weight = recipe.sealed ? 4 * v.grip + 6 * nearness_[v.vertex] : motion.hold * v.grip * side;
-    if (recipe.open > 0 && !recipe.sealed) weight *= 1 - q;  // the corners are free on an open jaw
+    double weight = motion.hold * v.grip * side;
+    if (recipe.open > 0) weight *= 1 - q;  // the corners are free on an open jaw
     if (weight <= 0) continue;
     const LipSection m = section(motion, v.along);
     const Frame f = frame_at(v.along);
     const Vector3d axis_point = f.middle - 4 * mm * f.out + (v.upper ? 3 : -3) * mm * f.up;
     const double roll = (v.upper ? -1 : 1) * side * v.lip * m.roll * std::numbers::pi / 180;
-    const Vector3d rolled = axis_point + Eigen::AngleAxisd(roll, f.along) * (v.rest - axis_point);
+    const Vector3d thinned = v.rest - side * v.lip * m.thin * (v.rest - f.middle).dot(f.up) * f.up;
+    const Vector3d rolled = axis_point + Eigen::AngleAxisd(roll, f.along) * (thinned - axis_point);
     const Vector3d forward = (f.out + 2 * Vector3d::UnitZ()).normalized();
-    const double sideways = std::clamp(4 * v.along, -1.0, 1.0);
-    const Vector3d way = m.up * f.up + m.out * forward + (m.wide * sideways + m.left) * Vector3d::UnitX();
+    const Vector3d way = m.up * f.up + m.out * forward + (m.wide + m.left) * Vector3d::UnitX();
     const Vector3d moved = rolled + side * v.follow * mm * way;
-    // The lower lip rides on the jaw, less so towards the corners; sealed lips meet halfway, their surroundings less.
-    const double ride = recipe.sealed ? (v.upper ? 0.42 * v.near : 1 - 0.58 * v.near)
-                        : v.upper     ? 0.45 * q * q
-                                      : 1 - 0.55 * q * q;
+    // The lower lip rides on the jaw, less so towards the corners.
+    const double ride = v.upper ? 0.5 * q * q : 1 - 0.5 * q * q;
     result.push_back({v.vertex, (1 - ride) * moved + ride * (jaw * moved), weight});
   }
   return result;

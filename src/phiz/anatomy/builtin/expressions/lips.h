@@ -31,7 +31,6 @@ class LipControl {
     double along;   ///< -1 right corner, 0 centre, 1 left corner
     double grip;    ///< how firmly the ring of the lips holds it: 1 near the parting line, 0 at 16 mm
     double follow;  ///< share of the lip's way that it goes: 1 near the line, 0 at 24 mm
-    double near;    ///< share of a sealed lip's way: 1 near the line, 0 at 22 mm
     double lip;     ///< how far it belongs to the body of the lip, which rolls
     bool upper;
     Vector3d rest;
@@ -40,6 +39,8 @@ class LipControl {
     Vector3d middle, along, up, out;
   };
   Frame frame_at(double along) const;
+  /// Takes a lip as a whole to where upper and lower lip meet on an open jaw; what is round the lips stretches.
+  Handle sealed(const LipVertex& v, const Eigen::Isometry3d& jaw) const;
 
   VectorXd nearness_;
   std::vector<LipVertex> vertices_;

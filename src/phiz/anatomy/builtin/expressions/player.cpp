@@ -5,6 +5,7 @@
 #include <set>
 
 #include "phiz/anatomy/builtin/expressions/puff.h"
+#include "phiz/anatomy/builtin/expressions/seal.h"
 #include "phiz/anatomy/builtin/expressions/teeth.h"
 #include "phiz/geometry/operators.h"
 #include "phiz/geometry/surface.h"
@@ -15,6 +16,8 @@ namespace {
 
 constexpr int iterations = 30;
 constexpr int smoothing_passes = 4;
+constexpr double lip_gap = 0.00025;  ///< metres; half of what they leave at rest, so that left and right can be added
+constexpr double lid_gap = 0.00004;  ///< metres
 
 /// Evens out displacements D (one row per vertex of V) where `calm` (0 to 1 per row) allows: tets are irregular, skin
 /// is not. Cotangent weights, so that the pattern of the triangles leaves no trace.
@@ -74,12 +77,13 @@ ExpressionPlayer::ExpressionPlayer(const HeadTemplate& head, const Proportions& 
       lips_(head),
       left_lids_(head, {head.left_eye_centre, proportions.eye_radius}, "left"),
       right_lids_(head, {head.right_eye_centre, proportions.eye_radius}, "right"),
-      lip_contact_(head, "upperLip", "lowerLip"),
-      left_lid_contact_(head, "leftUpperLid", "leftLowerLid"),
+      lip_contact_(head, "upperLip", "lowerLip", lip_gap),
+      left_lid_contact_(head, "leftUpperLid", "leftLowerLid", lid_gap),
       neighbours_(vertex_neighbours(head.skin.F, static_cast<int>(head.skin.V.rows()))) {}
 
-MatrixX3d ExpressionPlayer::play(const ExpressionRecipe& recipe) const {
-  const Eigen::Isometry3d jaw = jaw_transform(head_.jaw, jaw_pose(recipe, head_.jaw));
+MatrixX3d ExpressionPlayer::posed(const ExpressionRecipe& recipe, const JawPose& pose, const MatrixX3d& guess,
+                                  int steps) const {
+  const Eigen::Isometry3d jaw = jaw_transform(head_.jaw, pose);
   std::vector<Handle> handles = pulls_.handles(recipe);
   const auto add = [&handles](const std::vector<Handle>& more) {
     handles.insert(handles.end(), more.begin(), more.end());
@@ -91,7 +95,15 @@ MatrixX3d ExpressionPlayer::play(const ExpressionRecipe& recipe) const {
   if (recipe.puff != 0) add(puff_handles(head_, proportions_, recipe.puff * 1e-3));
   const std::vector<Obstacle> obstacles = {dental_arches(head_, proportions_.arch, jaw),
                                            left_lids_.eyeball(recipe.lids), right_lids_.eyeball(other)};
-  const MatrixX3d X = poser_.pose(handles, obstacles, jaw, iterations);
+  return poser_.pose(handles, obstacles, jaw, steps, guess);
+}
+
+MatrixX3d ExpressionPlayer::play(const ExpressionRecipe& recipe) const {
+  const JawPose pose = jaw_pose(recipe, head_.jaw);
+  MatrixX3d X;
+  if (recipe.sealed)  // the lips stretch step by step, or they would fold
+    for (const double share : {0.25, 0.5, 0.75}) X = posed(recipe, share * pose, X, iterations / 2);
+  X = posed(recipe, pose, X, iterations);
   MatrixX3d D = X - head_.volume.V;
   VectorXd calm(D.rows());
   for (Eigen::Index v = 0; v < D.rows(); ++v)
@@ -100,11 +112,15 @@ MatrixX3d ExpressionPlayer::play(const ExpressionRecipe& recipe) const {
                   : 0;
   smooth(D, head_.volume.V, head_.skin_triangles, calm);
   MatrixX3d drawn = head_.skin_interpolation * D(head_.skin_vertices, Eigen::all);
-  if (!recipe.sealed) lip_contact_.keep_apart(drawn);
+  if (recipe.closed) seal_lips(head_, drawn);
+  lip_contact_.keep_apart(drawn);
   left_lid_contact_.keep_apart(drawn);
-  mend_folds(head_.skin, neighbours_, drawn);
-  left_lids_.lift_off(head_.skin.V, drawn, recipe.lids);
-  right_lids_.lift_off(head_.skin.V, drawn, other);
+  const LidMotion other = recipe.paired ? LidMotion{} : recipe.lids;
+  for (int round = 0; round < 2; ++round) {  // each may undo a little of the other
+    left_lids_.lift_off(head_.skin.V, drawn, recipe.lids);
+    right_lids_.lift_off(head_.skin.V, drawn, other);
+    mend_folds(head_.skin, neighbours_, drawn);
+  }
   return drawn;
 }
 

@@ -22,6 +22,9 @@ class ExpressionPlayer {
   MatrixX3d play(const ExpressionRecipe& recipe) const;
 
  private:
+  /// Positions of head.volume with the jaw at `pose`, after `steps` from `guess` or, when that is empty, from rest.
+  MatrixX3d posed(const ExpressionRecipe& recipe, const JawPose& pose, const MatrixX3d& guess, int steps) const;
+
   const HeadTemplate& head_;
   const Proportions& proportions_;
   FleshPoser poser_;

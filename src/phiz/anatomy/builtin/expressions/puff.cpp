@@ -7,7 +7,7 @@ namespace phiz {
 
 std::vector<Handle> puff_handles(const HeadTemplate& head, const Proportions& p, double amount) {
   // The buccal window: between cheekbone and jaw line, in front of the masseter.
-  const double y = p.cheilion.y() + 0.007, x = p.cheilion.x() + 0.013;
+  const double y = p.cheilion.y() + 0.006, x = p.cheilion.x() + 0.017;
   const double z = 0.62 * p.cheilion.z() + 0.38 * p.gonion.z() + 0.010;
   std::vector<Handle> handles;
   for (const int v : head.skin_vertices) {
@@ -15,7 +15,7 @@ std::vector<Handle> puff_handles(const HeadTemplate& head, const Proportions& p,
     if (head.carrier[v] != static_cast<int>(Carrier::flesh)) continue;
     for (const double side : {1.0, -1.0}) {
       const Vector3d d = X - Vector3d(side * x, y, z);
-      const double r = std::sqrt(std::pow(d.x() / 0.031, 2) + std::pow(d.y() / 0.031, 2) + std::pow(d.z() / 0.040, 2));
+      const double r = std::sqrt(std::pow(d.x() / 0.038, 2) + std::pow(d.y() / 0.038, 2) + std::pow(d.z() / 0.046, 2));
       if (r >= 1) continue;
       const double bump = 1 - r * r * (2 - r * r);
       const Vector3d outward = Vector3d(side * 0.8, -0.05, 0.6).normalized();

@@ -25,9 +25,10 @@ struct MusclePull {
 struct LipSection {
   double up = 0;    ///< mm
   double out = 0;   ///< mm, away from the teeth
-  double wide = 0;  ///< mm, away from the midline
+  double wide = 0;  ///< mm, away from the midline; none at the centre
   double left = 0;  ///< mm, towards the person's left
   double roll = 0;  ///< degrees about the lip's length: positive turns the red outward, negative tucks it in
+  double thin = 0;  ///< share by which the height of the red shrinks towards the parting line; negative: fuller
 };
 
 /// A lip at its centre, halfway to the corner, and at the corner.
@@ -53,6 +54,7 @@ struct ExpressionRecipe {
   double open = 0, swing = 0;                          ///< jaw, radians
   double jaw_down = 0, jaw_forward = 0, jaw_side = 0;  ///< jaw, mm
   double puff = 0;                                     ///< mm by which air in the mouth pushes the cheeks out
+  bool closed = false;                                 ///< lips that stay closed
   bool sealed = false;                                 ///< keeps the lips closed whatever the jaw does
 };
 

@@ -38,7 +38,7 @@ Obstacle dental_arches(const HeadTemplate& head, const Proportions::DentalArch& 
     obstacle.vertices.push_back(v);
     floors.emplace_back(std::min(above, least), std::min(below, least));
   }
-  obstacle.weight = 0.6;
+  obstacle.weight = 2;
   obstacle.allowed = [upper, lower, floors, jaw](std::size_t k, const Vector3d& x) -> Vector3d {
     const Vector3d y = upper.lifted(x, floors[k].first);
     return jaw * lower.lifted(jaw.inverse() * y, floors[k].second);

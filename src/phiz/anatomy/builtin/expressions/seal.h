@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Lips that an expression leaves closed.
+#pragma once
+
+#include "phiz/anatomy/head_template.h"
+
+namespace phiz {
+
+/// Draws the lips together where `displacement` (of head.skin, metres) parts them by more than at rest: both move half
+/// the way, the skin round them less and less. Needs the skin regions loop:upperLipLine and loop:lowerLipLine.
+void seal_lips(const HeadTemplate& head, MatrixX3d& displacement);
+
+}  // namespace phiz
