@@ -17,10 +17,10 @@ demo: setup ## Head, performance, simulation, film and glTF in out/demo
 	ninja -C build/release -j$(JOBS) phiz
 	scripts/demo $(PHIZ) out/demo
 
-test: setup ## All tests, and the readers' fuzz tests under sanitizers; ends with one summary
+test: setup ## All tests, and those of the lower folders and of io under sanitizers; ends with one summary
 	cmake --preset release -Wno-dev
 	ninja -C build/release -j$(JOBS)
-	cmake --preset debug -Wno-dev -DPHIZ_TEST_FOLDERS="core;io"
+	cmake --preset debug -Wno-dev -DPHIZ_TEST_FOLDERS="core;geometry;numerics;elasticity;io"
 	ninja -C build/debug -j$(JOBS) tests
 	scripts/ctest-all -j$(JOBS) build/release build/debug
 

@@ -11,13 +11,13 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <utility>
 
+#include "inputs.h"
+#include "options.h"
 #include "phiz/core/error.h"
 #include "phiz/core/progress.h"
-#include "phiz/face/volumetric_blendshapes.h"
 #include "phiz/io/container.h"
-#include "phiz/io/live_link.h"
+#include "phiz/io/output_file.h"
 #include "phiz/io/take_file.h"
 #include "report.h"
 #include "verbs.h"
@@ -31,30 +31,13 @@ struct AnimateArguments {
   std::string performance;
   std::string output;
   std::string save_model;
-  std::pair<int, int> frames{0, -1};
+  std::string frames;
   std::optional<double> frame_rate;
   bool resume = false;
   bool dynamic = false;
   bool no_contact = false;
   Report report;
 };
-
-/// The model in a file, or the one of the head in it: its expressions are then carried into the flesh first.
-FaceModel load_model(const std::string& path) {
-  if (kind_of(path) != ContainerKind::head_template) return load_face_model(path);
-  HeadTemplate head = load_head_template(path);
-  Progress progress("volumetric blendshapes", static_cast<std::ptrdiff_t>(head.expressions.size()));
-  BlendshapeOptions options;
-  options.report = [&progress](const std::string&, const SolveStatistics&) { progress.advance(); };
-  return build_volumetric_blendshapes(std::move(head), options);
-}
-
-Performance load_any_performance(const std::string& path) {
-  if (path.ends_with(".phiz")) return load_performance(path);
-  const LiveLinkRecording recording = read_live_link(path);
-  for (const std::string& note : recording.notes) announce(path + ": " + note);
-  return recording.performance;
-}
 
 void announce_mismatch(const ExpressionMatch& match) {
   if (!match.unmatched.empty())
@@ -96,15 +79,27 @@ TakeWriter resume_take(const std::string& path, const Take& head, std::vector<Ta
 }
 
 void animate_model(const AnimateArguments& arguments) {
+  catch_interrupts();
+  protect_inputs(arguments.output, {arguments.model, arguments.performance, arguments.save_model});
+  protect_inputs(arguments.save_model, {arguments.model, arguments.performance});
   Performance performance = load_any_performance(arguments.performance);
   if (arguments.frame_rate) performance = resample(performance, *arguments.frame_rate);
-  const FaceModel model = load_model(arguments.model);
-  if (!arguments.save_model.empty()) save(arguments.save_model, model);
-
   AnimateOptions options;
   options.simulation.dynamic = arguments.dynamic;
   options.simulation.contact = !arguments.no_contact;
-  std::tie(options.first_frame, options.end_frame) = arguments.frames;
+  if (!arguments.frames.empty()) {
+    const FrameRange frames = frame_range(arguments.frames);
+    if (frames.end > performance.time.size())
+      misuse(fmt::format("--frames {}: {} has {} frames", arguments.frames, arguments.performance,
+                         performance.time.size()));
+    options.first_frame = frames.first;
+    options.end_frame = frames.end;
+  }
+  require_writable(arguments.output);
+  if (!arguments.save_model.empty()) require_writable(arguments.save_model);
+  const FaceModel model = load_model(arguments.model);
+  if (!arguments.save_model.empty()) save(arguments.save_model, model);
+
   announce_mismatch(match_expressions(model, performance));
 
   const Take head = empty_take(model, performance, options);
@@ -166,17 +161,20 @@ void add_animate(CLI::App& app) {
   verb->add_option("MODEL", arguments->model, "A head or a face model, a .phiz file")->required();
   verb->add_option("PERFORMANCE", arguments->performance, "A recording of Live Link Face (CSV), or a .phiz performance")
       ->required();
-  verb->add_option("-o,--output", arguments->output, "The take, a .phiz file")->required()->type_name("FILE");
-  verb->add_option("--frames", arguments->frames, "Frames A to B - 1 of the performance only")
-      ->delimiter(':')
-      ->type_name("A:B");
+  verb->add_option("-o,--output", arguments->output, "The take, a .phiz file")
+      ->required()
+      ->check(phiz_name())
+      ->type_name("FILE");
+  verb->add_option("--frames", arguments->frames, "Frames FIRST to END - 1 of the performance only")
+      ->type_name("FIRST:END");
   verb->add_option("--fps", arguments->frame_rate, "Resample the performance to this frame rate")
-      ->check(CLI::Range(1.0, 1000.0));
+      ->check(between(1, 1000));
   verb->add_flag("--resume", arguments->resume, "Go on with an interrupted take");
   verb->add_flag("--dynamic", arguments->dynamic, "With inertia; without, every frame is in balance");
   verb->add_flag("--no-contact", arguments->no_contact, "Let lips and teeth pass through each other");
   verb->add_option("--save-model", arguments->save_model,
                    "Keep the face model made from a head: animating it starts at once")
+      ->check(phiz_name())
       ->type_name("FILE");
   add_report(*verb, arguments->report);
   verb->footer(

@@ -10,13 +10,12 @@
 #include <string>
 #include <thread>
 
+#include "inputs.h"
+#include "options.h"
 #include "phiz/anatomy/builtin/builtin_head.h"
 #include "phiz/core/progress.h"
 #include "phiz/core/version.h"
 #include "phiz/face/volumetric_bench.h"
-#include "phiz/face/volumetric_blendshapes.h"
-#include "phiz/io/container.h"
-#include "phiz/io/live_link.h"
 #include "report.h"
 #include "verbs.h"
 
@@ -49,21 +48,11 @@ nlohmann::json machine() {
 }
 
 FaceModel bench_model(const BenchArguments& arguments) {
-  if (arguments.head != "builtin" && kind_of(arguments.head) != ContainerKind::head_template)
-    return load_face_model(arguments.head);
-  HeadTemplate head;
-  if (arguments.head == "builtin") {
-    BuiltinOptions options;
-    options.size = arguments.quick ? HeadSize::preview : HeadSize::standard;
-    options.report = announce;
-    head = build_builtin_head(options);
-  } else {
-    head = load_head_template(arguments.head);
-  }
-  Progress progress("volumetric blendshapes", static_cast<std::ptrdiff_t>(head.expressions.size()));
-  BlendshapeOptions options;
-  options.report = [&progress](const std::string&, const SolveStatistics&) { progress.advance(); };
-  return build_volumetric_blendshapes(std::move(head), options);
+  if (arguments.head != "builtin") return load_model(arguments.head);
+  BuiltinOptions options;
+  options.size = arguments.quick ? HeadSize::preview : HeadSize::standard;
+  options.report = announce;
+  return model_of(build_builtin_head(options));
 }
 
 nlohmann::json or_null(const std::optional<double>& value) {
@@ -76,8 +65,8 @@ void run_volumetric(const BenchArguments& arguments) {
   options.frames = arguments.frames > 0 ? arguments.frames : arguments.quick ? 40 : 240;
   options.reference_frames = arguments.quick ? 0 : 12;
   options.thread_scaling = !arguments.quick;
-  const Performance performance = arguments.performance.empty() ? bench_performance(options.frames)
-                                                                : read_live_link(arguments.performance).performance;
+  const Performance performance =
+      arguments.performance.empty() ? bench_performance(options.frames) : load_any_performance(arguments.performance);
   VolumetricBench bench;
   {
     Progress progress("frames", options.frames);
@@ -137,9 +126,11 @@ void add_bench(CLI::App& app) {
   volumetric->add_option("--template", arguments->head, "builtin, or a head or model in a .phiz file")
       ->capture_default_str()
       ->type_name("builtin|FILE");
-  volumetric->add_option("--performance", arguments->performance, "A Live Link Face CSV; made up without")
+  volumetric
+      ->add_option("--performance", arguments->performance,
+                   "A recording of Live Link Face (CSV) or a .phiz performance; made up without")
       ->type_name("FILE");
-  volumetric->add_option("--frames", arguments->frames, "Number of frames")->check(CLI::PositiveNumber);
+  volumetric->add_option("--frames", arguments->frames, "Number of frames")->check(between(1, 1e6));
   volumetric->add_flag("--quick", arguments->quick, "A short run on the preview head, without the independent solver");
   add_report(*volumetric, arguments->report);
   volumetric->footer("Example:\n  phiz bench volumetric --frames 240 --json bench.json");

@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "options.h"
 #include "phiz/core/error.h"
 #include "phiz/io/container.h"
+#include "phiz/io/file_bytes.h"
 #include "phiz/io/mesh_file.h"
 #include "phiz/io/take_export.h"
 #include "phiz/io/take_file.h"
@@ -29,7 +30,7 @@ struct ExportArguments {
 };
 
 void export_take(const ExportArguments& arguments, const Take& take) {
-  const std::string extension = std::filesystem::path(arguments.output).extension().string();
+  const std::string extension = lower_extension(arguments.output);
   nlohmann::json report{{"file", arguments.output}, {"frames", take.frames.size()}};
   std::string text = fmt::format("{}: {} frames", arguments.output, take.frames.size());
   if (extension == ".glb" || extension == ".gltf") {
@@ -47,14 +48,14 @@ void export_take(const ExportArguments& arguments, const Take& take) {
   } else if (extension == ".pc2" || extension == ".mdd") {
     export_take_point_cache(take, arguments.output);
   } else {
-    throw Error(ErrorKind::usage, "cannot export to '" + extension + "'; known: .glb, .gltf, .obj, .pc2, .mdd");
+    misuse("cannot export a take to '" + extension + "'; known: .glb, .gltf, .obj, .pc2, .mdd");
   }
   arguments.report.print(text + "\n");
   arguments.report.write(report);
 }
 
 void export_head(const ExportArguments& arguments, const HeadTemplate& head) {
-  const std::string extension = std::filesystem::path(arguments.output).extension().string();
+  const std::string extension = lower_extension(arguments.output);
   if (extension == ".glb" || extension == ".gltf") {
     export_take(arguments, rest_take(head));
     return;
@@ -91,7 +92,7 @@ void add_export(CLI::App& app) {
       ->type_name("FILE");
   verb->add_option("--tolerance", arguments->tolerance_mm,
                    "glTF: largest distance of the skin from the take, millimetres")
-      ->check(CLI::Range(1e-4, 10.0))
+      ->check(between(1e-4, 10))
       ->capture_default_str();
   add_report(*verb, arguments->report);
   verb->footer("Example:\n  phiz export take.phiz -o take.glb");

@@ -40,7 +40,6 @@ int run(int argc, char** argv) {
   app.parse_complete_callback([&] {
     limit = std::make_unique<phiz::ThreadLimit>(threads);
     phiz::Progress::set_quiet(quiet);
-    phiz::catch_interrupts();
   });
   phiz::add_template(app);
   phiz::add_animate(app);

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "options.h"
 #include "phiz/core/error.h"
 #include "phiz/core/progress.h"
 #include "phiz/io/file_bytes.h"
@@ -37,20 +38,6 @@ struct RenderArguments {
   bool sheet = false, all_expressions = false;
   Report report;
 };
-
-[[noreturn]] void misuse(const std::string& message) {
-  throw Error(ErrorKind::usage, message);
-}
-
-/// Two numbers with a separator between them.
-std::pair<double, double> two_numbers(const std::string& text, char separator, const char* option, const char* form) {
-  const std::size_t at = text.find(separator);
-  if (at != std::string::npos) {
-    const auto a = parse_number(trimmed(text.substr(0, at))), b = parse_number(trimmed(text.substr(at + 1)));
-    if (a && b && std::isfinite(*a) && std::isfinite(*b)) return {*a, *b};
-  }
-  misuse(fmt::format("{} '{}' is not of the form {}", option, text, form));
-}
 
 struct Extent {
   int width, height;
@@ -78,12 +65,16 @@ CutPlane cut_plane(const std::string& text) {
   return plane;
 }
 
+constexpr int largest_weight = 10;  // of an expression: far beyond any face, and safe to draw
+
 std::map<std::string, double> expression_weights(const std::vector<std::string>& words) {
   std::map<std::string, double> weights;
   for (const std::string& word : words) {
     const std::size_t at = word.find('=');
     const auto weight = at == std::string::npos ? 1.0 : parse_number(word.substr(at + 1));
-    if (!weight || !std::isfinite(*weight)) misuse("--expression '" + word + "' is not of the form NAME=WEIGHT");
+    if (!weight || !(std::abs(*weight) <= largest_weight))
+      misuse(fmt::format("--expression '{}' is not of the form NAME=WEIGHT with a weight from -{} to {}", word,
+                         largest_weight, largest_weight));
     weights[word.substr(0, at)] = *weight;
   }
   return weights;
@@ -103,16 +94,12 @@ RenderOptions rays(const std::string& quality, bool film) {
   return options;
 }
 
-struct Range {
-  int begin, end;
-};
-
-Range frames_of(const RenderArguments& a, const Subject& subject) {
+FrameRange frames_of(const RenderArguments& a, const Subject& subject) {
   if (a.frames.empty()) return {0, subject.frames};
-  const auto [begin, end] = two_numbers(a.frames, ':', "--frames", "FIRST:END");
-  if (!(begin >= 0 && end > begin && end <= subject.frames))
+  const FrameRange frames = frame_range(a.frames);
+  if (frames.end > subject.frames)
     misuse(fmt::format("--frames {} is not within the frames 0:{} of {}", a.frames, subject.frames, a.subject.file));
-  return {static_cast<int>(begin), static_cast<int>(end)};
+  return frames;
 }
 
 Image picture(const Subject& subject, int frame, View view, Extent extent, const RenderOptions& options) {
@@ -128,6 +115,7 @@ std::string frame_caption(const Subject& subject, int frame) {
 
 /// Frames of a take, expressions or views of a head.
 Image make_sheet(const RenderArguments& a, const Subject& subject, std::vector<View> views) {
+  catch_interrupts();
   const Extent extent = extent_of(a.size, 380);
   const RenderOptions options = rays(a.quality, false);
   std::vector<SheetCell> cells;
@@ -145,12 +133,12 @@ Image make_sheet(const RenderArguments& a, const Subject& subject, std::vector<V
     }
   } else if (subject.frames > 1 && a.frame < 0) {
     if (views.empty()) views = {View::three_quarter};
-    const Range range = frames_of(a, subject);
-    const int most = views.size() > 1 ? 6 : 12, count = std::min(most, range.end - range.begin);
+    const FrameRange range = frames_of(a, subject);
+    const int most = views.size() > 1 ? 6 : 12, count = std::min(most, range.end - range.first);
     Progress progress("render", static_cast<std::ptrdiff_t>(count) * static_cast<std::ptrdiff_t>(views.size()));
     for (const View view : views) {
       for (int i = 0; i < count && !interrupted(); ++i) {
-        const int frame = range.begin + (2 * i + 1) * (range.end - range.begin) / (2 * count);
+        const int frame = range.first + (2 * i + 1) * (range.end - range.first) / (2 * count);
         cells.push_back({picture(subject, frame, view, extent, options), frame_caption(subject, frame)});
         progress.advance();
       }
@@ -173,12 +161,13 @@ Image make_sheet(const RenderArguments& a, const Subject& subject, std::vector<V
 
 /// Frames of a take at the film's rate, or a turn of what does not move. Returns the number of frames.
 int make_film(const RenderArguments& a, const Subject& subject, View view) {
+  catch_interrupts();
   const Extent extent = extent_of(a.size, 640);
   const RenderOptions options = rays(a.quality, true);
   const bool moving = subject.frames > 1;
-  const Range range = frames_of(a, subject);
+  const FrameRange range = frames_of(a, subject);
   const double source_rate = moving ? subject.frame_rate : 30, rate = a.fps > 0 ? a.fps : source_rate;
-  const int count = moving ? static_cast<int>(std::ceil((range.end - range.begin) * rate / source_rate - 1e-9))
+  const int count = moving ? static_cast<int>(std::ceil((range.end - range.first) * rate / source_rate - 1e-9))
                            : static_cast<int>(std::lround(4 * rate));
   const Camera camera = subject.camera(view, extent.width, extent.height);
   FilmWriter film(a.output, {.frame_rate = rate});
@@ -187,7 +176,7 @@ int make_film(const RenderArguments& a, const Subject& subject, View view) {
     Camera placed = camera;
     int frame = 0;
     if (moving) {
-      frame = std::min(range.end - 1, range.begin + static_cast<int>(k * source_rate / rate + 1e-9));
+      frame = std::min(range.end - 1, range.first + static_cast<int>(k * source_rate / rate + 1e-9));
     } else {
       const Eigen::AngleAxisd turn(2 * M_PI * k / count, Vector3d::UnitY());
       placed.eye = camera.target + turn * (camera.eye - camera.target);
@@ -231,10 +220,11 @@ void run_render(RenderArguments a) {
   } else if (a.sheet || a.all_expressions || views.size() > 1) {
     write_png(a.output, make_sheet(a, subject, views));
   } else {
-    const Range range = frames_of(a, subject);
-    write_png(a.output, picture(subject, a.frame >= 0 ? a.frame : range.begin, first, extent_of(a.size, 800),
+    const FrameRange range = frames_of(a, subject);
+    write_png(a.output, picture(subject, a.frame >= 0 ? a.frame : range.first, first, extent_of(a.size, 800),
                                 rays(a.quality, false)));
   }
+  if (interrupted()) fail("stopped; what is finished is kept in " + a.output);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   a.report.print(film ? fmt::format("{}: {} frames, {:.1f} s\n", a.output, frames, seconds)
                       : fmt::format("{}: {:.1f} s\n", a.output, seconds));
@@ -263,7 +253,7 @@ void add_render(CLI::App& app) {
   verb->add_option("--view", a->views, "View or views: " + views)->delimiter(',');
   verb->add_option("--style", a->style, "clay, skin, wireframe, anatomy, bones, cutaway or heat")
       ->capture_default_str();
-  verb->add_option("--frame", a->frame, "Frame of a take")->check(CLI::NonNegativeNumber);
+  verb->add_option("--frame", a->frame, "Frame of a take")->check(between(0, 1e6));
   verb->add_option("--frames", a->frames, "Frames FIRST to END - 1 of a take")->type_name("FIRST:END");
   verb->add_option("--size", a->size, "Pixels of the picture, the film or each picture of a sheet")->type_name("WxH");
   verb->add_flag("--sheet", a->sheet, "A sheet of many pictures: frames of a take, views of anything else");
@@ -279,8 +269,7 @@ void add_render(CLI::App& app) {
   verb->add_flag("--tets", a->subject.view.cut_tets, "Outline the tets in a cut-away");
   verb->add_option("--expression", a->expressions, "Expressions that a head shows")->type_name("NAME=WEIGHT");
   verb->add_flag("--all-expressions", a->all_expressions, "A sheet of all expressions of a head");
-  verb->add_option("--fps", a->fps, "Frames per second of a film; the take's own without")
-      ->check(CLI::Range(1.0, 240.0));
+  verb->add_option("--fps", a->fps, "Frames per second of a film; the take's own without")->check(between(1, 240));
   verb->add_option("--quality", a->quality, "Rays per pixel")
       ->check(CLI::IsMember({"draft", "normal", "fine"}))
       ->capture_default_str();

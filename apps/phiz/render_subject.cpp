@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "options.h"
 #include "phiz/core/error.h"
 #include "phiz/geometry/surface.h"
 #include "phiz/geometry/validate.h"
@@ -54,8 +55,9 @@ HeatScale scale_of(const SubjectOptions& options, const VectorXd& values, const 
 }
 
 [[noreturn]] void refuse_quantity(const SubjectOptions& options, const std::string& known) {
-  throw Error(ErrorKind::usage,
-              fmt::format("a heat map of '{}' cannot be made of {}; use {}", options.quantity, options.file, known));
+  misuse(options.quantity.empty()
+             ? fmt::format("a heat map of {} needs --quantity: {}", options.file, known)
+             : fmt::format("a heat map of '{}' cannot be made of {}; use {}", options.quantity, options.file, known));
 }
 
 Subject open_mesh(const SubjectOptions& options) {
@@ -225,8 +227,7 @@ Subject open_subject(const SubjectOptions& options) {
   }
   if (subject.name.empty()) subject.name = options.file;
   if (!options.view.expressions.empty()) {
-    if (!subject.express)
-      throw Error(ErrorKind::usage, options.file + " has no expressions of its own; --expression needs a head");
+    if (!subject.express) misuse(options.file + " has no expressions of its own; --expression needs a head");
     subject.express(options.view.expressions);
   }
   return subject;

@@ -9,9 +9,11 @@
 #include <optional>
 #include <string>
 
+#include "options.h"
 #include "phiz/anatomy/builtin/builtin_head.h"
 #include "phiz/core/progress.h"
 #include "phiz/io/container.h"
+#include "phiz/io/output_file.h"
 #include "report.h"
 #include "verbs.h"
 
@@ -32,17 +34,18 @@ void make_builtin(const BuiltinArguments& arguments) {
   options.size = head_size(arguments.size);
   options.person = arguments.person;
   options.report = announce;
+  require_writable(arguments.output);
   const HeadTemplate head = build_builtin_head(options);
   save(arguments.output, head);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   arguments.report.print(
       fmt::format("{}: {}, {} tets ({} soft), {} skin vertices, {} expressions, {} muscles, {:.1f} s\n",
-                  arguments.output, head.name, head.volume.T.rows(), soft_tet_count(head), head.skin.V.rows(),
+                  arguments.output, head.name, head.volume.T.rows(), soft_tets(head).size(), head.skin.V.rows(),
                   head.expressions.size(), head.muscles.size(), seconds));
   arguments.report.write({{"file", arguments.output},
                           {"name", head.name},
                           {"tets", head.volume.T.rows()},
-                          {"soft_tets", soft_tet_count(head)},
+                          {"soft_tets", soft_tets(head).size()},
                           {"vertices", head.volume.V.rows()},
                           {"skin_vertices", head.skin.V.rows()},
                           {"expressions", head.expressions.size()},
@@ -62,7 +65,10 @@ void add_template(CLI::App& app) {
       ->capture_default_str();
   builtin->add_option("--person", arguments->person, "Seed of a random person; the mean person without")
       ->type_name("SEED");
-  builtin->add_option("-o,--output", arguments->output, "The head, a .phiz file")->required()->type_name("FILE");
+  builtin->add_option("-o,--output", arguments->output, "The head, a .phiz file")
+      ->required()
+      ->check(phiz_name())
+      ->type_name("FILE");
   add_report(*builtin, arguments->report);
   builtin->footer("Example:\n  phiz template builtin --size standard --person 7 -o head.phiz");
   builtin->callback([arguments] { make_builtin(*arguments); });

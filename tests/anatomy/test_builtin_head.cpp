@@ -67,15 +67,15 @@ void expect_sound(const HeadTemplate& head) {
 
 TEST(BuiltinHead, PreviewIsSound) {
   expect_sound(preview());
-  EXPECT_GT(soft_tet_count(preview()), 6000);
-  EXPECT_LT(soft_tet_count(preview()), 10000);
+  EXPECT_GT(soft_tets(preview()).size(), 6000);
+  EXPECT_LT(soft_tets(preview()).size(), 10000);
 }
 
 TEST(BuiltinHead, StandardHasTheTetsOfThePapers) {
   const HeadTemplate head = build(HeadSize::standard);
   expect_sound(head);
-  EXPECT_GE(soft_tet_count(head), 35000);
-  EXPECT_LE(soft_tet_count(head), 40000);
+  EXPECT_GE(soft_tets(head).size(), 35000);
+  EXPECT_LE(soft_tets(head).size(), 40000);
 }
 
 TEST(BuiltinHead, RandomPeopleAreSoundAndDiffer) {

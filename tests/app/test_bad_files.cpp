@@ -49,8 +49,13 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenFile{"nan.csv", csv_header + "00:00:00:00.0,61,nan,0\n", ":2"},
         BrokenFile{"percent.csv", csv_header + "00:00:00:00.0,61,87,0\n00:00:00:01.0,61,55,0\n", "percent"},
         BrokenFile{"degrees.csv", csv_header + "00:00:00:00.0,61,0.2,35\n00:00:00:01.0,61,0.2,40\n", "degrees"},
-        BrokenFile{"empty.phiz", "", "phiz"}, BrokenFile{"text.phiz", "this is no container", "phiz"},
-        BrokenFile{"text.png", "this is no picture", "png"}, BrokenFile{"unknown.xyz", "?", "xyz"}),
+        BrokenFile{"twice.csv", "Timecode,JawOpen,jawOpen\n00:00:00:00.0,0,0\n", "twice"},
+        BrokenFile{"cut-row.csv", csv_header + "00:00:00:00.0,61\n", ":2"},
+        BrokenFile{"backward.csv", csv_header + "00:00:01:00.0,61,0,0\n00:00:00:00.0,61,0,0\n", ":3"},
+        BrokenFile{"milliseconds.csv", "time,jawOpen\n0,0\n33,0\n67,0\n", "1000"},
+        BrokenFile{"utf16.csv", std::string("\xff\xfeJ\0a\0w\0", 8), "UTF-8"}, BrokenFile{"empty.phiz", "", "empty"},
+        BrokenFile{"text.phiz", "this is no container", "phiz"}, BrokenFile{"text.png", "this is no picture", "png"},
+        BrokenFile{"unknown.xyz", "?", "xyz"}),
     [](const ::testing::TestParamInfo<BrokenFile>& parameter) {
       std::string name = parameter.param.name;
       for (char& c : name)

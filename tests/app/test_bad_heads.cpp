@@ -48,5 +48,40 @@ TEST(BadHead, AnOutputThatCannotBeWrittenIsAFailure) {
   EXPECT_EQ(outcome.code, 1) << outcome.err;
 }
 
+TEST(BadHead, AnOutputOverAnInputIsRefusedAndTheInputKept) {
+  const ScratchFolder scratch;
+  const std::string head = scratch / "head.phiz";
+  std::filesystem::copy_file(PHIZ_PREVIEW_HEAD, head);
+  const Outcome outcome = phiz_command({"animate", head, PHIZ_PERFORMANCE, "-o", head});
+  EXPECT_EQ(outcome.code, 2) << outcome.err;
+  EXPECT_TRUE(read_text(head) == read_text(PHIZ_PREVIEW_HEAD));
+}
+
+TEST(BadHead, AFolderInThePlaceOfTheOutputIsAFailureThatLeavesNothing) {
+  const ScratchFolder scratch;
+  std::filesystem::create_directory(scratch / "take.phiz");
+  const Outcome outcome = phiz_command({"animate", PHIZ_PREVIEW_HEAD, PHIZ_PERFORMANCE, "-o", scratch / "take.phiz"});
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(scratch / "take.phiz.part"));
+}
+
+TEST(BadHead, AnUnknownExpressionIsAMistakeOfTheCommandLine) {
+  const ScratchFolder scratch;
+  const Outcome outcome =
+      phiz_command({"render", PHIZ_PREVIEW_HEAD, "-o", scratch / "head.png", "--expression", "jawOpne=1"});
+  EXPECT_EQ(outcome.code, 2) << outcome.err;
+  EXPECT_NE(outcome.err.find("jawOpne"), std::string::npos) << outcome.err;
+}
+
+TEST(BadMesh, AVertexBeyondTheReachOfTheRayTracerIsRefused) {
+  const ScratchFolder scratch;
+  for (const std::string far : {"1e30", "1e200"}) {
+    write_text(scratch / "far.obj", "v 0 0 0\nv 0.1 0 0\nv 0 " + far + " 0\nf 1 2 3\n");
+    const Outcome outcome = phiz_command({"render", scratch / "far.obj", "-o", scratch / "far.png", "--size", "32x32"});
+    EXPECT_EQ(outcome.code, 3) << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(scratch / "far.png"));
+  }
+}
+
 }  // namespace
 }  // namespace phiz::testing

@@ -32,6 +32,19 @@ TEST(Usage, MistakesOnTheCommandLineExitWithTwo) {
       {"render", "take.phiz"},
       {"bench"},
       {"bench", "nonsense"},
+      {"template", "builtin", "-o", "head.obj"},
+      {"animate", "head.phiz", PHIZ_PERFORMANCE, "-o", "take.glb"},
+      {"animate", "head.phiz", PHIZ_PERFORMANCE, "-o", "take.phiz", "--frames", "5:2"},
+      {"animate", "head.phiz", PHIZ_PERFORMANCE, "-o", "take.phiz", "--frames", "5"},
+      {"animate", "head.phiz", PHIZ_PERFORMANCE, "-o", "take.phiz", "--frames", "1.5:3"},
+      {"animate", "head.phiz", PHIZ_PERFORMANCE, "-o", "take.phiz", "--frames", "0:301"},
+      {"animate", "head.phiz", PHIZ_PERFORMANCE, "-o", "take.phiz", "--fps", "nan"},
+      {"export", "take.phiz", "-o", "take.glb", "--tolerance", "nan"},
+      {"render", "take.phiz", "-o", "take.jpg"},
+      {"render", "take.phiz", "-o", "take.png", "--frame", "-1"},
+      {"render", "head.phiz", "-o", "head.png", "--expression", "jawOpen=1e30"},
+      {"render", "head.phiz", "-o", "head.png", "--size", "0x0"},
+      {"bench", "volumetric", "--frames", "0"},
   };
   for (const auto& words : mistakes) {
     const Outcome outcome = phiz_command(words);

@@ -63,6 +63,7 @@ inline FaceModel sample_model() {
   shape.log_rotation.setRandom(1, 3);
   shape.stretch.setRandom(1, 6);
   shape.displacement.setRandom(4, 3);
+  shape.displacement *= 0.01F;
   model.shapes = {shape};
   return model;
 }

@@ -242,5 +242,38 @@ TEST(Container, version_1_still_loads) {
   expect_same(take, load_take(folder.file("a.phiz")));
 }
 
+TEST(Container, a_take_that_cannot_be_saved_whole_leaves_nothing) {
+  const TemporaryFolder folder;
+  Take take = sample_take(3);
+  take.frames[2].skin(0, 0) = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_THROW(save(folder.file("a.phiz"), take), Error);
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) ADD_FAILURE() << entry.path();
+}
+
+TEST(Container, what_lies_far_from_the_head_is_refused) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.phiz");
+  HeadTemplate head = sample_head();
+  head.parts[0].mesh.V *= 1000;
+  save(path, head);
+  EXPECT_REJECTED(load_head_template(path), "metres");
+  head = sample_head();
+  head.skin.V *= 1000;
+  save(path, head);
+  EXPECT_REJECTED(load_head_template(path), "drawn skin");
+  head = sample_head();
+  head.left_eye_centre[1] = 60;
+  save(path, head);
+  EXPECT_REJECTED(load_head_template(path), "left eye");
+  Take take = sample_take(1);
+  take.skin.V *= 1e6;
+  save(path, take);
+  EXPECT_REJECTED(TakeReader(path), "skin");
+  take = sample_take(1);
+  take.frame_rate = 1e300;
+  save(path, take);
+  EXPECT_REJECTED(TakeReader(path), "frame_rate");
+}
+
 }  // namespace
 }  // namespace phiz

@@ -82,6 +82,14 @@ TEST(LiveLink, names_the_line_of_what_is_wrong) {
   EXPECT_REJECTED(parse_live_link("a,b\n0,0\n", "a.csv"), "no column");
   EXPECT_REJECTED(parse_live_link("time,jawOpen\n", "a.csv"), "no frames");
   EXPECT_REJECTED(parse_live_link("time,\"jawOpen\n", "a.csv"), "not closed");
+  EXPECT_REJECTED(parse_live_link("time,jawOpen\n0,0\n33,0\n67,0\n", "a.csv"), "divide milliseconds by 1000");
+  EXPECT_REJECTED(parse_live_link(std::string_view("\xff\xfeJ\0", 4), "a.csv"), "UTF-8");
+}
+
+TEST(LiveLink, weights_beyond_0_to_1_are_played_with_a_note) {
+  const auto recording = parse_live_link("time,jawOpen\n0,-0.5\n0.1,1.5\n", "a.csv");
+  EXPECT_EQ(recording.performance.weights(1, column("jawOpen")), 1.5);
+  EXPECT_NE(recording.notes.back().find("from -0.5 to 1.5"), std::string::npos) << recording.notes.back();
 }
 
 std::vector<Timecode> recorded(double rate, double start, int frames, int step = 1) {

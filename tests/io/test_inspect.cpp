@@ -28,11 +28,11 @@ TEST(Inspect, a_take_tells_its_frames_and_statistics) {
   const auto json = inspect(folder.file("a.phiz"));
   EXPECT_EQ(json["kind"], "take");
   EXPECT_EQ(json["frames"], 5);
-  EXPECT_EQ(json["framesPlanned"], 8);
+  EXPECT_EQ(json["frames_planned"], 8);
   EXPECT_EQ(json["complete"], false);
-  EXPECT_EQ(json["statistics"]["framesNotConverged"], 1);
-  EXPECT_EQ(json["statistics"]["millisecondsMax"], 18);
-  EXPECT_EQ(json["statistics"]["contactsMax"], 4);
+  EXPECT_EQ(json["statistics"]["frames_not_converged"], 1);
+  EXPECT_EQ(json["statistics"]["ms_max"], 18);
+  EXPECT_EQ(json["statistics"]["contacts_max"], 4);
   EXPECT_NE(readable(json).find("frames: 5\n"), std::string::npos);
 }
 
@@ -48,8 +48,8 @@ TEST(Inspect, every_kind_of_file_is_described) {
   export_take_gltf(sample_take(3), folder.file("a.glb"));
   export_take_point_cache(sample_take(3), folder.file("b.mdd"));
   export_take_point_cache(sample_take(3), folder.file("b.pc2"));
-  EXPECT_EQ(inspect(folder.file("head.phiz"))["softTets"], 1);
-  EXPECT_EQ(inspect(folder.file("model.phiz"))["volumetricShapes"][0]["name"], "jawOpen");
+  EXPECT_EQ(inspect(folder.file("head.phiz"))["soft_tets"], 1);
+  EXPECT_EQ(inspect(folder.file("model.phiz"))["volumetric_shapes"][0]["name"], "jawOpen");
   EXPECT_EQ(inspect(folder.file("performance.phiz"))["frames"], 10);
   EXPECT_EQ(inspect(folder.file("a.csv"))["frames"], 10);
   EXPECT_EQ(inspect(folder.file("a.png"))["width"], 2);

@@ -45,13 +45,8 @@ HeadTemplate toy_head() {
 }
 
 Take toy_take(const HeadTemplate& head) {
-  Take take;
-  take.model = head.name;
-  take.skin = head.skin;
-  take.parts = head.parts;
-  take.joint = head.jaw;
-  take.left_eye_centre = head.left_eye_centre;
-  take.right_eye_centre = head.right_eye_centre;
+  Take take = rest_take(head);
+  take.frames.clear();
   for (int i = 0; i < 2; ++i) {
     TakeFrame frame;
     frame.time = 0.5 * i;

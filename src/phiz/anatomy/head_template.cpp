@@ -14,6 +14,9 @@
 namespace phiz {
 namespace {
 
+constexpr double farthest = 1;             // metres from the origin, for anything that belongs to a head
+constexpr double largest_skin_gap = 0.01;  // metres between the drawn and the simulation skin
+
 /// Says what is wrong with one item of the head.
 class Check {
  public:
@@ -29,6 +32,15 @@ class Check {
     for (Eigen::Index i = 0; i < m.rows(); ++i)
       for (Eigen::Index j = 0; j < m.cols(); ++j)
         if (!std::isfinite(static_cast<double>(m(i, j)))) wrong(name + " row " + std::to_string(i) + " is not finite");
+  }
+
+  /// Points within reach of the head; so none is in another unit or not finite.
+  void nearby(const MatrixX3d& points, const std::string& name) const {
+    for (Eigen::Index i = 0; i < points.rows(); ++i)
+      if (!(points.row(i).norm() <= farthest))
+        wrong(name + " (row " + std::to_string(i) + ") is more than " + std::to_string(static_cast<int>(farthest)) +
+                  " m away from the head",
+              "positions must be in metres");
   }
 
   template <class Derived>
@@ -116,6 +128,11 @@ void check_skin(const HeadTemplate& head, const Check& check) {
   check.that(is_edge_manifold(head.skin.F) && is_oriented(head.skin.F),
              "the drawn skin is not manifold or not consistently oriented");
   check.weights(head.skin_sampling, s, head.skin.V.rows(), "skin_sampling");
+  const MatrixX3d apart = head.skin_sampling * head.skin.V - head.volume.V(head.skin_vertices, Eigen::all);
+  check.that(apart.rowwise().norm().maxCoeff() < largest_skin_gap,
+             "the drawn skin and the simulation skin are up to " +
+                 std::to_string(1e3 * apart.rowwise().norm().maxCoeff()) + " mm apart",
+             "both must be in metres, and skin_sampling must fit them");
   check.weights(head.skin_interpolation, head.skin.V.rows(), s, "skin_interpolation");
   for (const auto& [name, vertices] : head.skin_regions)
     check.rows_below(vertices, head.skin.V.rows(), "skin region " + name);
@@ -126,6 +143,7 @@ void check_parts(const HeadTemplate& head, const Check& check) {
   for (const Part& part : head.parts) {
     check.fresh(names, part.name, "part");
     validate(part.mesh, check.where() + ": part " + part.name);
+    check.nearby(part.mesh.V, "the part " + part.name);
     check.that(part.carrier >= Carrier::flesh && part.carrier <= Carrier::right_eye,
                "the part " + part.name + " has an unknown carrier");
     for (const auto& [shape, displacement] : part.shapes) {
@@ -137,7 +155,7 @@ void check_parts(const HeadTemplate& head, const Check& check) {
 }
 
 void check_jaw(const JawJoint& jaw, const Check& check) {
-  check.finite(jaw.centre, "the jaw's centre");
+  check.nearby(jaw.centre.transpose(), "the jaw's centre");
   check.finite(jaw.lower, "the jaw's lower limits");
   check.finite(jaw.upper, "the jaw's upper limits");
   check.that(std::abs(jaw.axis.norm() - 1) < 1e-6 && std::abs(jaw.up.norm() - 1) < 1e-6 &&
@@ -157,6 +175,9 @@ void check_expressions(const HeadTemplate& head, const Check& check) {
                    " displacements for a skin of " + std::to_string(head.skin.V.rows()) + " vertices");
     check.finite(e.displacement, "expression " + e.name);
     check.finite(e.jaw, "jaw pose of expression " + e.name);
+    check.that(e.jaw.cwiseAbs().maxCoeff() < 1.6,
+               "the expression " + e.name + " turns the jaw by more than a right angle",
+               "angles must be in radians, shifts in metres");
     check.that(e.displacement.cwiseAbs().maxCoeff() < 0.2,
                "the expression " + e.name + " moves the skin by more than 0.2 m", "displacements must be in metres");
   }
@@ -232,8 +253,18 @@ void validate(const HeadTemplate& head, const std::string& where) {
   check_landmarks(head, check);
   check_muscles(head, check);
   check_contacts(head, check);
-  check.finite(head.left_eye_centre, "the centre of the left eye");
-  check.finite(head.right_eye_centre, "the centre of the right eye");
+  check.nearby(head.left_eye_centre.transpose(), "the centre of the left eye");
+  check.nearby(head.right_eye_centre.transpose(), "the centre of the right eye");
+}
+
+VectorXi soft_tets(const HeadTemplate& head) {
+  std::vector<int> rows;
+  for (Eigen::Index t = 0; t < head.volume.T.rows(); ++t) {
+    bool free = false;
+    for (int k = 0; k < 4; ++k) free |= head.carrier(head.volume.T(t, k)) == static_cast<int>(Carrier::flesh);
+    if (free && head.volume.region(t) == Tissue::flesh) rows.push_back(static_cast<int>(t));
+  }
+  return Eigen::Map<const VectorXi>(rows.data(), static_cast<Eigen::Index>(rows.size()));
 }
 
 const Part* find_part(const HeadTemplate& head, const std::string& name) {

@@ -106,6 +106,9 @@ struct HeadTemplate {
 /// head (wrong unit). `where` is put in front of the message, e.g. the file name.
 void validate(const HeadTemplate& head, const std::string& where);
 
+/// The soft tets: flesh tets with at least one vertex that is free to move. Rows of volume.T, ascending.
+VectorXi soft_tets(const HeadTemplate& head);
+
 /// The part of that name, or nullptr.
 const Part* find_part(const HeadTemplate& head, const std::string& name);
 /// The expression of that name, or nullptr.

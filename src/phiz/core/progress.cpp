@@ -16,9 +16,20 @@ namespace {
 std::atomic<bool> quiet_flag{false};
 volatile std::sig_atomic_t interrupt_flag = 0;
 
+volatile std::sig_atomic_t caught_for_good = 0;
+volatile std::sig_atomic_t delayed_signal = 0;
+std::atomic<int> delays{0};  // lives of DelayInterrupts
+
 void on_signal(int signal_number) {
   interrupt_flag = 1;
   std::signal(signal_number, SIG_DFL);
+}
+
+using Handler = void (*)(int);
+Handler before_interrupt = SIG_DFL, before_termination = SIG_DFL;
+
+void on_delayed_signal(int signal_number) {
+  delayed_signal = signal_number;
 }
 
 bool is_terminal() {
@@ -70,12 +81,26 @@ void announce(const std::string& what) {
 }
 
 void catch_interrupts() {
+  caught_for_good = 1;
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
 }
 
 bool interrupted() {
   return interrupt_flag != 0;
+}
+
+DelayInterrupts::DelayInterrupts() {
+  if (caught_for_good != 0 || ++delays > 1) return;
+  before_interrupt = std::signal(SIGINT, on_delayed_signal);
+  before_termination = std::signal(SIGTERM, on_delayed_signal);
+}
+
+DelayInterrupts::~DelayInterrupts() {
+  if (caught_for_good != 0 || --delays > 0) return;
+  std::signal(SIGINT, before_interrupt);
+  std::signal(SIGTERM, before_termination);
+  if (delayed_signal != 0) std::raise(delayed_signal);
 }
 
 }  // namespace phiz

@@ -33,9 +33,19 @@ class Progress {
 /// One line about what is being done, on standard error; nothing when quiet.
 void announce(const std::string& what);
 
-/// Makes Ctrl-C (SIGINT) and SIGTERM set a flag instead of ending the process; a second Ctrl-C ends it.
+/// From now on Ctrl-C (SIGINT) and SIGTERM set a flag instead of ending the process; a second Ctrl-C ends it. For work
+/// that asks interrupted() and keeps what is finished.
 void catch_interrupts();
 /// True once the user has asked to stop. Long loops ask after each finished step.
 bool interrupted();
+
+/// While a file is being written: Ctrl-C and SIGTERM, where they would end the process, do so at the end of this life.
+class DelayInterrupts {
+ public:
+  DelayInterrupts();
+  ~DelayInterrupts();
+  DelayInterrupts(const DelayInterrupts&) = delete;
+  DelayInterrupts& operator=(const DelayInterrupts&) = delete;
+};
 
 }  // namespace phiz

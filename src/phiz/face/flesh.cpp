@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "phiz/face/flesh.h"
 
-#include <algorithm>
-#include <vector>
-
-#include "phiz/core/error.h"
-
 namespace phiz {
 
 namespace {
@@ -15,18 +10,6 @@ bool moves_with(const HeadTemplate& head, Eigen::Index vertex, Carrier carrier) 
 }
 
 }  // namespace
-
-VectorXi soft_tets(const HeadTemplate& head) {
-  std::vector<int> rows;
-  for (Eigen::Index t = 0; t < head.volume.T.rows(); ++t) {
-    if (head.volume.region[t] != Tissue::flesh) continue;
-    bool free = false;
-    for (int c = 0; c < 4; ++c) free = free || moves_with(head, head.volume.T(t, c), Carrier::flesh);
-    if (free) rows.push_back(static_cast<int>(t));
-  }
-  if (rows.empty()) reject(head.name, "has no flesh that can move");
-  return Eigen::Map<const VectorXi>(rows.data(), static_cast<Eigen::Index>(rows.size()));
-}
 
 ElasticBody flesh_body(const HeadTemplate& head, const VectorXi& soft, const TermWeights& weights, double stiffness) {
   ElasticBody body;

@@ -7,9 +7,6 @@
 
 namespace phiz {
 
-/// Flesh tets with at least one vertex that is free to move: rows of head.volume.T, ascending.
-VectorXi soft_tets(const HeadTemplate& head);
-
 /// The elastic body of the soft tets: bone vertices fixed, one stiffness everywhere (pascals), no attachments.
 ElasticBody flesh_body(const HeadTemplate& head, const VectorXi& soft, const TermWeights& weights, double stiffness);
 

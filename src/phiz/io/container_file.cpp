@@ -59,6 +59,7 @@ void check_first_block(const std::string& path) {
   if (std::filesystem::is_directory(path, code)) reject(path, "this is a folder, expected a file");
   std::ifstream file(path, std::ios::binary);
   std::string block(block_bytes, '\0');
+  if (file.peek() == std::ifstream::traits_type::eof()) reject(path, "the file is empty");
   if (!file.read(block.data(), block_bytes) || !block.starts_with(magic)) reject(path, "not a .phiz file");
   const auto state = load_number<std::uint32_t>(block, 8);
   if (state == unfinished) return;
@@ -197,6 +198,8 @@ void ContainerFile::finish() {
 void write_container(const std::string& path, const std::string& kind,
                      const std::function<void(const Hdf5Group& root)>& fill) {
   const std::scoped_lock lock(hdf5_lock());
+  require_writable(path);
+  const DelayInterrupts delay;
   const std::string temporary = temporary_name(path);
   try {
     ContainerFile file = ContainerFile::create(temporary, kind);

@@ -49,6 +49,9 @@ std::vector<std::string> split_fields(std::string_view line, char separator, con
 
 CsvTable parse_csv(std::string_view text, const std::string& where) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  if (text.find('\0') != std::string_view::npos) {
+    reject(where, "the file is no plain text, or text in UTF-16", "save it as UTF-8");
+  }
   CsvTable table;
   LineScanner lines(text);
   while (lines.next()) {

@@ -42,7 +42,7 @@ json describe_mesh(const std::string& path) {
                  {"faces", mesh.faces.size()},
                  {"triangles", triangles},
                  {"quads", quads},
-                 {"textureCoordinates", mesh.UV.rows()},
+                 {"texture_coordinates", mesh.UV.rows()},
                  {"bounds", size_of(mesh.V)}};
   if (!mesh.groups.empty()) result["groups"] = mesh.groups;
   if (mesh.faces.empty()) return result;
@@ -68,7 +68,7 @@ json describe_scene(const std::string& path) {
     if (node.mesh >= 0) {
       const GltfMesh& mesh = scene.meshes[static_cast<std::size_t>(node.mesh)];
       item["mesh"] = mesh.name;
-      item["morphTargets"] = mesh.primitives.empty() ? 0 : mesh.primitives[0].targets.size();
+      item["morph_targets"] = mesh.primitives.empty() ? 0 : mesh.primitives[0].targets.size();
     }
     nodes.push_back(item);
   }
@@ -86,7 +86,7 @@ json describe_scene(const std::string& path) {
     animations.push_back({{"name", animation.name},
                           {"channels", animation.channels.size()},
                           {"frames", frames},
-                          {"durationSeconds", duration}});
+                          {"duration_s", duration}});
   }
   result["animations"] = animations;
   return result;
@@ -99,7 +99,7 @@ json describe_image(const std::string& path) {
 
 json describe_cache(const PointCache& cache, bool knows_time) {
   json result = {{"kind", "point cache"}, {"frames", cache.frames.size()}, {"points", cache.frames[0].rows()}};
-  if (knows_time) result["frameRate"] = cache.frame_rate;
+  if (knows_time) result["frame_rate"] = cache.frame_rate;
   return result;
 }
 

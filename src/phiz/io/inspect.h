@@ -9,7 +9,7 @@ namespace phiz {
 
 /// Reads the file completely, validates it and describes it. Members of every description: `file`, `bytes`, `kind`
 /// ("mesh", "scene", "recording", "image", "point cache", "head", "model", "performance", "take") and `format`; a take
-/// has `frames` (a number), `framesPlanned`, `complete` and `statistics`; lengths are metres unless a name says
+/// has `frames` (a number), `frames_planned`, `complete` and `statistics`; lengths are metres unless a name says
 /// otherwise. Throws phiz::Error(bad_input) as the reader of the format does, or when no reader knows the extension.
 nlohmann::json inspect(const std::string& path);
 

@@ -29,19 +29,20 @@ json describe(const HeadTemplate& head) {
           {"name", head.name},
           {"provenance", head.provenance},
           {"tets", head.volume.T.rows()},
-          {"softTets", tets_of(Tissue::flesh)},
-          {"skullTets", tets_of(Tissue::skull)},
-          {"mandibleTets", tets_of(Tissue::mandible)},
+          {"soft_tets", soft_tets(head).size()},
+          {"flesh_tets", tets_of(Tissue::flesh)},
+          {"skull_tets", tets_of(Tissue::skull)},
+          {"mandible_tets", tets_of(Tissue::mandible)},
           {"vertices", head.volume.V.rows()},
-          {"skinVertices", head.skin.V.rows()},
-          {"skinTriangles", head.skin.F.rows()},
-          {"sizeMillimetres", {to_millimetres * size[0], to_millimetres * size[1], to_millimetres * size[2]}},
+          {"skin_vertices", head.skin.V.rows()},
+          {"skin_triangles", head.skin.F.rows()},
+          {"size_mm", {to_millimetres * size[0], to_millimetres * size[1], to_millimetres * size[2]}},
           {"parts", parts},
           {"expressions", expressions},
           {"muscles", muscles},
           {"landmarks", head.landmarks.size()},
-          {"skullLandmarks", head.skull_landmarks.size()},
-          {"contactPairs", head.contact_pairs.size()}};
+          {"skull_landmarks", head.skull_landmarks.size()},
+          {"contact_pairs", head.contact_pairs.size()}};
 }
 
 /// Value below which the share q of the sorted list lies.
@@ -75,25 +76,25 @@ json describe_take(const std::string& path) {
   json result = {{"kind", "take"},
                  {"model", head.model},
                  {"frames", reader.frames()},
-                 {"framesPlanned", head.frames_planned},
+                 {"frames_planned", head.frames_planned},
                  {"complete", reader.frames() >= head.frames_planned},
-                 {"frameRate", head.frame_rate},
-                 {"durationSeconds", last - first},
-                 {"skinVertices", head.skin.V.rows()},
-                 {"skinTriangles", head.skin.F.rows()},
-                 {"largestMotionMillimetres", to_millimetres * moved},
+                 {"frame_rate", head.frame_rate},
+                 {"duration_s", last - first},
+                 {"skin_vertices", head.skin.V.rows()},
+                 {"skin_triangles", head.skin.F.rows()},
+                 {"motion_mm_max", to_millimetres * moved},
                  {"parts", parts}};
   if (!times.empty()) {
     std::sort(times.begin(), times.end());
-    result["statistics"] = {{"framesNotConverged", unconverged},
-                            {"iterationsMax", iterations},
-                            {"residualMax", residual},
-                            {"contactsMax", contacts},
-                            {"penetrationMaxMillimetres", to_millimetres * penetration},
-                            {"volumeChangeMax", volume_change},
-                            {"millisecondsMedian", quantile(times, 0.5)},
-                            {"milliseconds95", quantile(times, 0.95)},
-                            {"millisecondsMax", times.back()}};
+    result["statistics"] = {{"frames_not_converged", unconverged},
+                            {"iterations_max", iterations},
+                            {"residual_max", residual},
+                            {"contacts_max", contacts},
+                            {"penetration_mm_max", to_millimetres * penetration},
+                            {"volume_change_max", volume_change},
+                            {"ms_median", quantile(times, 0.5)},
+                            {"ms_p95", quantile(times, 0.95)},
+                            {"ms_max", times.back()}};
   }
   return result;
 }
@@ -109,10 +110,10 @@ json describe(const Performance& p) {
   const double duration = p.time.size() > 0 ? p.time[p.time.size() - 1] - p.time[0] : 0;
   return {{"kind", "performance"},
           {"frames", p.time.size()},
-          {"frameRate", p.frame_rate},
-          {"durationSeconds", duration},
+          {"frame_rate", p.frame_rate},
+          {"duration_s", duration},
           {"expressions", p.expressions.size()},
-          {"largestWeights", used}};
+          {"largest_weights", used}};
 }
 
 json describe_container(const std::string& path) {
@@ -132,7 +133,7 @@ json describe_container(const std::string& path) {
   json shapes = json::array();
   for (const VolumetricShape& shape : model.shapes)
     shapes.push_back({{"name", shape.name}, {"tets", shape.tets.size()}});
-  result["volumetricShapes"] = shapes;
+  result["volumetric_shapes"] = shapes;
   return result;
 }
 

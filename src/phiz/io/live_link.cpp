@@ -21,8 +21,10 @@ namespace phiz {
 namespace {
 
 constexpr double default_rate = 60;
-constexpr double largest_weight = 3;   // recorders overshoot 1 a little; percentages exceed this at once
-constexpr double largest_angle = 3.3;  // radians, a little more than half a turn
+constexpr double slowest_rate = 1, fastest_rate = 1000;  // frames per second of a recording that can be meant
+constexpr double largest_weight = 3;     // recorders overshoot 1 a little; percentages exceed this at once
+constexpr double unusual_excess = 0.05;  // beyond 0 to 1, that the user hears of
+constexpr double largest_angle = 3.3;    // radians, a little more than half a turn
 
 /// The nine angles after the expressions, in the order of the app: column of the 9-vector (head, left eye, right eye)
 /// and the factor that turns the recorder's sign into ours.
@@ -66,6 +68,7 @@ class RecordingParser {
     match_columns();
     if (table_.rows.empty()) reject(where_, "a header but no frames", "the recording is empty");
     read_values();
+    note_unusual_weights();
     read_time();
     drop_repeated_frames();
     return std::move(result_);
@@ -152,6 +155,13 @@ class RecordingParser {
     angles(frame, angle % 3) = value * angle_signs[static_cast<std::size_t>(angle % 3)];
   }
 
+  void note_unusual_weights() {
+    const MatrixXd& weights = result_.performance.weights;
+    const double low = weights.minCoeff(), high = weights.maxCoeff();
+    if (low < -unusual_excess || high > 1 + unusual_excess)
+      note(fmt::format("weights go from {:.3g} to {:.3g}; they are played as they are", low, high));
+  }
+
   void read_time() {
     const std::size_t rows = table_.rows.size();
     std::vector<double> time(rows);
@@ -201,6 +211,10 @@ class RecordingParser {
     std::nth_element(steps.begin(), middle, steps.end());
     const double step = *middle;
     rate = 1 / step;
+    if (rate < slowest_rate || rate > fastest_rate) {
+      reject(where_, fmt::format("the typical step between frames is {:.4g} s", step),
+             "time codes or seconds are expected; divide milliseconds by 1000");
+    }
     for (const double usual : {24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 100.0, 120.0}) {
       if (std::abs(rate / usual - 1) < 0.03) rate = usual;
     }

@@ -72,6 +72,10 @@ void OutputFile::commit() {
   rename_file(temporary_, path_);
 }
 
+void require_writable(const std::string& path) {
+  const OutputFile probe(path);
+}
+
 void write_bytes(const std::string& path, std::string_view bytes) {
   OutputFile file(path);
   file.write(bytes);

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "phiz/core/progress.h"
+
 namespace phiz {
 
 /// A file being written. Missing folders on the way to it are created. Every member function throws
@@ -23,6 +25,7 @@ class OutputFile {
   void commit();
 
  private:
+  DelayInterrupts delay_;
   std::string path_;
   std::string temporary_;
   std::FILE* file_ = nullptr;
@@ -30,6 +33,9 @@ class OutputFile {
 
 /// Writes a whole file.
 void write_bytes(const std::string& path, std::string_view bytes);
+
+/// Throws phiz::Error(failure) unless a file can be made at `path`: for asking before long work.
+void require_writable(const std::string& path);
 
 /// Creates the folder that `path` lies in, where it is missing. Throws phiz::Error(failure).
 void make_parent_folder(const std::string& path);

@@ -90,6 +90,9 @@ std::string defect_of(const TakeFrame& frame) {
   for (const Points& points : point_arrays) {
     if (!(frame.*points.values).allFinite()) return fmt::format("a value of '{}' is not finite", points.name);
   }
+  if (!is_near(frame.skin) || !is_near(frame.volume)) {
+    return fmt::format("a point is more than {} m away from the head", farthest);
+  }
   if (!frame.jaw.allFinite() || !frame.part_weights.allFinite()) return "the jaw pose or a weight is not finite";
   if (!is_rotation(frame.head.linear()) || !frame.head.translation().allFinite()) return "the head pose is not rigid";
   if (!is_rotation(frame.left_eye) || !is_rotation(frame.right_eye)) return "the pose of an eye is not a rotation";

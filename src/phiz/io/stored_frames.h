@@ -27,7 +27,16 @@ void store_frame(const Hdf5Group& group, int index, const TakeFrame& frame);
 /// Throws when a position or a pose is not finite or a rotation is none.
 TakeFrame stored_frame(const Hdf5Group& group, int index, const FrameSizes& sizes);
 
-/// The first thing that is not finite or no rotation, or nothing.
+/// Metres from the head within which everything that a take shows must lie.
+inline constexpr double farthest = 100;
+
+/// Whether all points are finite and no coordinate is beyond `farthest`.
+template <class Points>
+bool is_near(const Points& points) {
+  return points.size() == 0 || points.cwiseAbs().template maxCoeff<Eigen::PropagateNaN>() <= farthest;
+}
+
+/// The first thing that is not finite, far away from the head or no rotation, or nothing.
 std::string defect_of(const TakeFrame& frame);
 
 }  // namespace phiz

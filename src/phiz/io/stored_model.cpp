@@ -12,6 +12,10 @@ namespace phiz {
 
 namespace {
 
+constexpr double largest_angle = 6.3;     // radians, a full turn
+constexpr double largest_shift = 0.2;     // metres
+constexpr double largest_stretch = 1000;  // far beyond what any flesh can do
+
 void check_shape(const VolumetricShape& shape, const HeadTemplate& head, const std::string& where) {
   const auto tets = shape.tets.size();
   if (shape.log_rotation.rows() != tets || shape.stretch.rows() != tets) {
@@ -26,6 +30,17 @@ void check_shape(const VolumetricShape& shape, const HeadTemplate& head, const s
   if (!shape.jaw.allFinite() || !shape.log_rotation.allFinite() || !shape.stretch.allFinite() ||
       !shape.displacement.allFinite()) {
     reject(where, "a value of the shape is not finite");
+  }
+  if (shape.jaw.cwiseAbs().maxCoeff() > largest_angle ||
+      (tets > 0 && shape.log_rotation.rowwise().norm().maxCoeff() > largest_angle)) {
+    reject(where, "an angle of the shape is more than a full turn", "angles must be in radians");
+  }
+  if (shape.displacement.size() > 0 && shape.displacement.cwiseAbs().maxCoeff() > largest_shift) {
+    reject(where, fmt::format("the shape moves the flesh by more than {} m", largest_shift),
+           "displacements must be in metres");
+  }
+  if (tets > 0 && shape.stretch.cwiseAbs().maxCoeff() > largest_stretch) {
+    reject(where, fmt::format("the shape stretches a tet more than {} times", largest_stretch));
   }
 }
 

@@ -21,8 +21,14 @@ namespace {
 
 constexpr const char* count_name = "frames";  // the number of finished frames; written after each of them
 
+constexpr double slowest_rate = 1e-3, fastest_rate = 1e5;  // frames per second
+
 std::string part_name(const std::string& path) {
   return path + ".part";
+}
+
+void require_near(const MatrixX3d& points, const std::string& where) {
+  if (!is_near(points)) reject(where, fmt::format("a point is more than {} m away from the head", farthest));
 }
 
 void store_take_head(const Hdf5Group& root, const Take& take) {
@@ -50,10 +56,14 @@ Take stored_take_head(const Hdf5Group& root) {
   take.joint = stored_joint(root.group("jaw"));
   take.left_eye_centre = root.read<Vector3d>("left_eye_centre");
   take.right_eye_centre = root.read<Vector3d>("right_eye_centre");
-  if (!(take.frame_rate > 0)) reject(root.where("frame_rate"), "the frame rate is not positive");
-  if (!take.left_eye_centre.allFinite() || !take.right_eye_centre.allFinite()) {
-    reject(root.where("left_eye_centre"), "the centre of an eye is not finite");
+  if (take.frames_planned < 0) reject(root.where("frames_planned"), fmt::format("{} frames", take.frames_planned));
+  if (!(take.frame_rate >= slowest_rate && take.frame_rate <= fastest_rate)) {
+    reject(root.where("frame_rate"), fmt::format("{} is no frame rate", take.frame_rate));
   }
+  require_near(take.skin.V, root.where("skin"));
+  for (const Part& part : take.parts) require_near(part.mesh.V, root.where("part " + part.name));
+  require_near(take.left_eye_centre.transpose(), root.where("left_eye_centre"));
+  require_near(take.right_eye_centre.transpose(), root.where("right_eye_centre"));
   return take;
 }
 
@@ -79,26 +89,55 @@ std::string difference(const Take& a, const Take& b) {
   return {};
 }
 
-}  // namespace
-
-struct TakeWriter::State {
-  std::string path;
-  ContainerFile file;
+/// What the frames of a file have in common, and how many there are.
+struct FrameList {
   Eigen::Index skin_vertices = 0;
   Eigen::Index expressions = 0;
   int frames = 0;
   std::optional<FrameSizes> sizes;  ///< known from the first frame on
 };
 
+FrameList no_frames(const Take& head) {
+  return {head.skin.V.rows(), static_cast<Eigen::Index>(head.expressions.size()), 0, std::nullopt};
+}
+
+void append_frame(const Hdf5Group& root, FrameList& list, const TakeFrame& frame, const std::string& path) {
+  const FrameSizes sizes = sizes_of(frame);
+  const std::string here = fmt::format("{}: frame {}", path, list.frames);
+  if (sizes.skin != list.skin_vertices || sizes.weights != list.expressions) {
+    fail(fmt::format("{} has {} vertices and {} weights, the take {} and {}", here, sizes.skin, sizes.weights,
+                     list.skin_vertices, list.expressions));
+  }
+  const std::string defect = defect_of(frame);
+  if (!defect.empty()) fail(here + ": " + defect);
+  const Hdf5Group group = root.group("frame_data");
+  if (!list.sizes) {
+    if (!group.has_array("numbers")) create_frames(group, sizes);
+    list.sizes = stored_sizes(group, 0);
+  }
+  if (!(*list.sizes == sizes)) fail(here + " has a volume or velocities and others do not, or of another size");
+  store_frame(group, list.frames, frame);
+  root.set(count_name, list.frames + 1);
+  ++list.frames;
+}
+
+}  // namespace
+
+struct TakeWriter::State {
+  std::string path;
+  ContainerFile file;
+  FrameList list;
+};
+
 TakeWriter::TakeWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 TakeWriter::TakeWriter(const std::string& path, const Take& head) {
   const std::scoped_lock lock(hdf5_lock());
+  require_writable(path);
   ContainerFile file = ContainerFile::create(part_name(path), name_of(ContainerKind::take));
   store_take_head(file.root(), head);
   file.flush();
-  state_ = std::make_unique<State>(State{path, std::move(file), head.skin.V.rows(),
-                                         static_cast<Eigen::Index>(head.expressions.size()), 0, std::nullopt});
+  state_ = std::make_unique<State>(State{path, std::move(file), no_frames(head)});
 }
 
 TakeWriter TakeWriter::resume(const std::string& path, const Take& head) {
@@ -117,11 +156,10 @@ TakeWriter TakeWriter::resume(const std::string& path, const Take& head) {
     if (!different.empty()) {
       reject(path, "the take there cannot be resumed: " + different, "choose another file or start anew");
     }
-    const int frames = stored_frame_count(file.root());
-    std::optional<FrameSizes> sizes;
-    if (frames > 0) sizes = stored_sizes(file.root().group("frame_data"), frames);
-    return TakeWriter(std::make_unique<State>(State{
-        path, std::move(file), head.skin.V.rows(), static_cast<Eigen::Index>(head.expressions.size()), frames, sizes}));
+    FrameList list = no_frames(head);
+    list.frames = stored_frame_count(file.root());
+    if (list.frames > 0) list.sizes = stored_sizes(file.root().group("frame_data"), list.frames);
+    return TakeWriter(std::make_unique<State>(State{path, std::move(file), list}));
   } catch (...) {
     // The copy was ours; what a killed program left stays for the user to look at.
     if (std::filesystem::exists(path)) std::filesystem::remove(part);
@@ -142,30 +180,14 @@ TakeWriter::~TakeWriter() {
 }
 
 int TakeWriter::frames() const {
-  return state_ ? state_->frames : 0;
+  return state_ ? state_->list.frames : 0;
 }
 
 void TakeWriter::append(const TakeFrame& frame) {
   const std::scoped_lock lock(hdf5_lock());
   if (!state_) fail("a frame was appended to a take that is finished");
-  const FrameSizes sizes = sizes_of(frame);
-  const std::string here = fmt::format("{}: frame {}", state_->path, state_->frames);
-  if (sizes.skin != state_->skin_vertices || sizes.weights != state_->expressions) {
-    fail(fmt::format("{} has {} vertices and {} weights, the take {} and {}", here, sizes.skin, sizes.weights,
-                     state_->skin_vertices, state_->expressions));
-  }
-  const std::string defect = defect_of(frame);
-  if (!defect.empty()) fail(here + ": " + defect);
-  const Hdf5Group group = state_->file.root().group("frame_data");
-  if (!state_->sizes) {
-    if (!group.has_array("numbers")) create_frames(group, sizes);
-    state_->sizes = stored_sizes(group, 0);
-  }
-  if (!(*state_->sizes == sizes)) fail(here + " has a volume or velocities and others do not, or of another size");
-  store_frame(group, state_->frames, frame);
-  state_->file.root().set(count_name, state_->frames + 1);
+  append_frame(state_->file.root(), state_->list, frame, state_->path);
   state_->file.flush();
-  ++state_->frames;
 }
 
 void TakeWriter::finish() {
@@ -225,9 +247,11 @@ TakeFrame TakeReader::frame(int index) const {
 }
 
 void save(const std::string& path, const Take& take) {
-  TakeWriter writer(path, take);
-  for (const TakeFrame& frame : take.frames) writer.append(frame);
-  writer.finish();
+  write_container(path, name_of(ContainerKind::take), [&](const Hdf5Group& root) {
+    store_take_head(root, take);
+    FrameList list = no_frames(take);
+    for (const TakeFrame& frame : take.frames) append_frame(root, list, frame, path);
+  });
 }
 
 Take load_take(const std::string& path) {

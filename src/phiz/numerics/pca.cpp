@@ -10,20 +10,29 @@
 
 namespace phiz {
 
+namespace {
+
+/// The entry of largest magnitude of each left vector is made positive.
+void fix_signs(ThinSvd& svd) {
+  for (Eigen::Index k = 0; k < svd.s.size(); ++k) {
+    Eigen::Index largest = 0;
+    svd.U.col(k).cwiseAbs().maxCoeff(&largest);
+    if (svd.U(largest, k) < 0) {
+      svd.U.col(k) *= -1;
+      svd.V.col(k) *= -1;
+    }
+  }
+}
+
+}  // namespace
+
 ThinSvd thin_svd(const MatrixXd& A, double tolerance) {
   if (A.size() == 0) fail("a matrix to be decomposed is empty");
   if (!A.allFinite()) fail("a matrix to be decomposed is not finite");
   if (A.rows() < A.cols()) {
     ThinSvd flipped = thin_svd(A.transpose(), tolerance);
     ThinSvd out{flipped.V, flipped.s, flipped.U};
-    for (Eigen::Index k = 0; k < out.s.size(); ++k) {
-      Eigen::Index largest = 0;
-      out.U.col(k).cwiseAbs().maxCoeff(&largest);
-      if (out.U(largest, k) < 0) {
-        out.U.col(k) *= -1;
-        out.V.col(k) *= -1;
-      }
-    }
+    fix_signs(out);
     return out;
   }
   // Tall: QR first, then the small triangle.
@@ -37,14 +46,7 @@ ThinSvd thin_svd(const MatrixXd& A, double tolerance) {
   U.topRows(A.cols()) = svd.matrixU().leftCols(rank);
   U.applyOnTheLeft(qr.householderQ());
   ThinSvd out{std::move(U), s.head(rank), svd.matrixV().leftCols(rank)};
-  for (Eigen::Index k = 0; k < rank; ++k) {
-    Eigen::Index largest = 0;
-    out.U.col(k).cwiseAbs().maxCoeff(&largest);
-    if (out.U(largest, k) < 0) {
-      out.U.col(k) *= -1;
-      out.V.col(k) *= -1;
-    }
-  }
+  fix_signs(out);
   return out;
 }
 

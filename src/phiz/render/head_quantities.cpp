@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "phiz/core/error.h"
+#include "phiz/geometry/operators.h"
 #include "phiz/geometry/spatial_query.h"
-#include "phiz/geometry/surface.h"
 #include "phiz/geometry/topology.h"
 
 namespace phiz {
@@ -18,14 +18,6 @@ void check(const Take& take, const TakeFrame& frame) {
   if (frame.skin.rows() != take.skin.V.rows())
     reject("take", fmt::format("a frame has {} skin vertices, the skin {}", frame.skin.rows(), take.skin.V.rows()),
            "animate again");
-}
-
-VectorXd vertex_areas(const MatrixX3d& V, const MatrixX3i& F) {
-  const VectorXd area = triangle_areas(V, F);
-  VectorXd sum = VectorXd::Zero(V.rows());
-  for (Eigen::Index f = 0; f < F.rows(); ++f)
-    for (int k = 0; k < 3; ++k) sum[F(f, k)] += area[f] / 3;
-  return sum;
 }
 
 }  // namespace
@@ -46,8 +38,8 @@ VectorXd skin_speed(const TakeFrame& before, const TakeFrame& now) {
 
 VectorXd skin_stretch(const Take& take, const TakeFrame& frame) {
   check(take, frame);
-  const VectorXd rest = vertex_areas(take.skin.V, take.skin.F),
-                 now = vertex_areas(frame.skin.cast<double>(), take.skin.F);
+  const VectorXd rest = lumped_triangle_mass(take.skin.V, take.skin.F),
+                 now = lumped_triangle_mass(frame.skin.cast<double>(), take.skin.F);
   return rest.binaryExpr(now, [](double r, double n) { return r > 0 ? 100 * (n / r - 1) : 0.0; });
 }
 

@@ -60,7 +60,8 @@ Scene head_scene(const HeadTemplate& head, const HeadViewOptions& options) {
   Vector2d left_look = Vector2d::Zero(), right_look = Vector2d::Zero();  // yaw to the person's left, pitch down
   for (const auto& [name, weight] : options.expressions) {
     const Expression* expression = find_expression(head, name);
-    if (expression == nullptr) reject(head.name, "it has no expression '" + name + "'", "phiz inspect lists them");
+    if (expression == nullptr)
+      throw Error(ErrorKind::usage, head.name + " has no expression '" + name + "'; phiz inspect lists them");
     posed.skin_now += weight * expression->displacement;
     jaw += weight * expression->jaw;
     look(name, weight, left_look, right_look);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "phiz/render/ray_scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -10,6 +12,8 @@
 namespace phiz::detail {
 
 namespace {
+
+constexpr double farthest = 1e9;  // the ray tracer counts in floats
 
 /// Angle-weighted vertex normals.
 std::vector<Vector3f> vertex_normals(const TracedSurface& s) {
@@ -34,8 +38,13 @@ TracedSurface prepare(const Surface& surface) {
   TracedSurface s;
   const Eigen::Index n = surface.mesh.V.rows();
   s.position.resize(n + 1, Eigen::Vector4f::Zero());
-  for (Eigen::Index i = 0; i < n; ++i)
-    s.position[i].head<3>() = (surface.transform * Vector3d(surface.mesh.V.row(i))).cast<float>();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Vector3d position = surface.transform * Vector3d(surface.mesh.V.row(i));
+    if (!(position.cwiseAbs().maxCoeff() <= farthest))
+      reject(surface.name, fmt::format("vertex {} lies too far out to be drawn", i),
+             fmt::format("coordinates must be within {:g}", farthest));
+    s.position[i].head<3>() = position.cast<float>();
+  }
   s.triangle.resize(surface.mesh.F.rows());
   for (Eigen::Index f = 0; f < surface.mesh.F.rows(); ++f)
     s.triangle[f] = surface.mesh.F.row(f).transpose().cast<unsigned>();

@@ -93,7 +93,7 @@ void build_volume(HeadTemplate& head, const SizePlan& plan, const RefinedSkin& s
   for (int attempt = 0; attempt < 5; ++attempt) {
     head.volume = tetrahedralise(surfaces, options);
     assign_carriers(head, skin.regions.at("neckCap"));
-    const Eigen::Index count = soft_tet_count(head);
+    const Eigen::Index count = soft_tets(head).size();
     if (count >= plan.soft_low && count <= plan.soft_high) return;
     (count > plan.soft_high ? low : high) = options.radius_edge_ratio;
     options.radius_edge_ratio = std::sqrt(low * high);
@@ -138,16 +138,6 @@ HeadSize head_size(const std::string& name) {
 
 std::string head_size_name(HeadSize size) {
   return plan_of(size).name;
-}
-
-Eigen::Index soft_tet_count(const HeadTemplate& head) {
-  Eigen::Index count = 0;
-  for (Eigen::Index t = 0; t < head.volume.T.rows(); ++t) {
-    bool free = false;
-    for (int k = 0; k < 4; ++k) free |= head.carrier(head.volume.T(t, k)) == static_cast<int>(Carrier::flesh);
-    count += head.volume.region(t) == Tissue::flesh && free;
-  }
-  return count;
 }
 
 HeadTemplate build_builtin_head(const BuiltinOptions& options) {

@@ -33,7 +33,4 @@ struct BuiltinOptions {
 /// surface, then inner ones. Deterministic. Throws phiz::Error when a person cannot be built.
 HeadTemplate build_builtin_head(const BuiltinOptions& options = {});
 
-/// Number of tets of region flesh with at least one free vertex.
-Eigen::Index soft_tet_count(const HeadTemplate& head);
-
 }  // namespace phiz

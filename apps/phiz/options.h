@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What several verbs ask of their options. Mistakes throw phiz::Error(usage).
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <utility>
+
+namespace CLI {
+class Validator;
+}
+
+namespace phiz {
+
+[[noreturn]] void misuse(const std::string& message);
+
+/// Two finite numbers with a separator between them, e.g. 640x480. `form` shows the user how to write them.
+std::pair<double, double> two_numbers(const std::string& text, char separator, const char* option, const char* form);
+
+/// "FIRST:END" of the option --frames: whole numbers with 0 <= FIRST < END.
+struct FrameRange {
+  int first, end;
+};
+FrameRange frame_range(const std::string& text);
+
+/// A number from `low` to `high`; no other text, and no NaN.
+CLI::Validator between(double low, double high);
+
+/// A file name that ends in .phiz.
+CLI::Validator phiz_name();
+
+/// Refuses an output that is one of the files that the verb reads; empty names count for nothing.
+void protect_inputs(const std::string& output, std::initializer_list<std::string> inputs);
+
+}  // namespace phiz
