@@ -17,6 +17,7 @@
 #include "phiz/core/error.h"
 #include "phiz/core/progress.h"
 #include "phiz/io/file_bytes.h"
+#include "phiz/io/output_file.h"
 #include "phiz/io/png.h"
 #include "phiz/io/text_scanner.h"
 #include "phiz/render/contact_sheet.h"
@@ -207,7 +208,11 @@ void run_render(RenderArguments a) {
   std::vector<View> views;
   for (const std::string& name : a.views) views.push_back(view_from_name(name));
 
+  // Mistakes are told before anything is opened, let alone rendered.
+  extent_of(a.size, 0);
+  if (!a.frames.empty()) frame_range(a.frames);
   const Subject subject = open_subject(a.subject);
+  require_writable(a.output);
   if (a.frame >= subject.frames)
     misuse(
         fmt::format("--frame {} is not within the frames 0 to {} of {}", a.frame, subject.frames - 1, a.subject.file));
