@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <string>
 #include <utility>
@@ -47,7 +48,7 @@ VectorXi tets_below(const HeadTemplate& head, const VectorXi& soft) {
 /// target must not ask for that: gradients outside of the bounds are replaced by the mean of their sound neighbours,
 /// layer by layer, and what is left is brought within the bounds.
 void repair_gradients(std::vector<Matrix3d>& F, const VectorXd& volume, const MatrixX4i& neighbours) {
-  constexpr double least = 0.4, most = 2.2;
+  constexpr double least = 0.4, most = 4;
   constexpr int layers = 4;
   std::vector<char> sound(F.size());
   for (std::size_t t = 0; t < F.size(); ++t) {
@@ -176,6 +177,25 @@ class ShapeSolver {
   ProjectiveDynamics hold_;
 };
 
+/// What has to be added to `base` for a blend of both to give `sum`.
+VolumetricShape difference(const VolumetricShape& sum, const VolumetricShape& base) {
+  std::vector<int> tets;
+  std::set_union(sum.tets.begin(), sum.tets.end(), base.tets.begin(), base.tets.end(), std::back_inserter(tets));
+  VolumetricShape out = sum;
+  out.jaw -= base.jaw;
+  out.displacement -= base.displacement;
+  out.tets = Eigen::Map<const VectorXi>(tets.data(), static_cast<Eigen::Index>(tets.size()));
+  out.log_rotation.setZero(out.tets.size(), 3);
+  out.stretch.setZero(out.tets.size(), 6);
+  for (const auto& [shape, sign] : {std::pair{&sum, 1.0F}, {&base, -1.0F}})
+    for (Eigen::Index i = 0, at = 0; i < shape->tets.size(); ++i) {
+      while (out.tets[at] != shape->tets[i]) ++at;
+      out.log_rotation.row(at) += sign * shape->log_rotation.row(i);
+      out.stretch.row(at) += sign * shape->stretch.row(i);
+    }
+  return out;
+}
+
 }  // namespace
 
 Vector3d rotation_logarithm(const Matrix3d& R) {
@@ -210,10 +230,18 @@ FaceModel build_volumetric_blendshapes(HeadTemplate head, const BlendshapeOption
   FaceModel model;
   {
     ShapeSolver solver(head, options);
+    const Expression* open = find_expression(head, "jawOpen");
     for (const Expression& expression : head.expressions) {
       if (interrupted()) fail("stopped while building volumetric blendshapes");
       SolveStatistics statistics;
-      model.shapes.push_back(solver.solve(expression, statistics));
+      if (expression.name == "mouthClose" && open != nullptr) {
+        // Lips that meet over an open jaw: with the jaw closed the shape would turn them inside out.
+        Expression both{expression.name, open->displacement + expression.displacement, open->jaw + expression.jaw};
+        SolveStatistics again;
+        model.shapes.push_back(difference(solver.solve(both, statistics), solver.solve(*open, again)));
+      } else {
+        model.shapes.push_back(solver.solve(expression, statistics));
+      }
       if (options.report) options.report(expression.name, statistics);
     }
   }

@@ -25,7 +25,8 @@ struct BlendshapeOptions {
 
 /// Solves every expression of the head for the whole flesh: bones placed by the expression's jaw pose, skin gradients
 /// transferred to the tets below (eq. 5.5, 5.6), then skin held to the sculpted shape; the deformation gradients of the
-/// result are the shape. Vertices that move with the skull do not move. Throws phiz::Error for heads that cannot be
+/// result are the shape. mouthClose is solved on top of jawOpen, for which it is made, and stored as the difference.
+/// Vertices that move with the skull do not move. Throws phiz::Error for heads that cannot be
 /// solved.
 FaceModel build_volumetric_blendshapes(HeadTemplate head, const BlendshapeOptions& options = {});
 
