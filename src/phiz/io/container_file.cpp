@@ -59,6 +59,7 @@ void check_first_block(const std::string& path) {
   if (std::filesystem::is_directory(path, code)) reject(path, "this is a folder, expected a file");
   std::ifstream file(path, std::ios::binary);
   std::string block(block_bytes, '\0');
+  if (!file) reject(path, "the file cannot be opened", "check its permissions");
   if (file.peek() == std::ifstream::traits_type::eof()) reject(path, "the file is empty");
   if (!file.read(block.data(), block_bytes) || !block.starts_with(magic)) reject(path, "not a .phiz file");
   const auto state = load_number<std::uint32_t>(block, 8);

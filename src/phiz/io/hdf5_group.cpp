@@ -315,14 +315,18 @@ void Hdf5Group::create_frames(const std::string& name, Scalar scalar, const Dime
     chunk.push_back(std::clamp<hsize_t>(size, 1, largest_chunk));
     count *= size;
   }
-  // A chunk holds one frame of positions, or many frames of a few numbers.
-  if (count < 512) chunk[0] = 64;
+  // A chunk holds one frame of positions, compressed; or many frames of a few numbers, which stay as long as they are,
+  // so that a frame is added in place and a full disk cannot harm those before it.
+  const bool small = count < 512;
+  if (small) chunk[0] = 64;
   const Hdf5Handle space = own_space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), most.data()));
   const Hdf5Handle properties = own_properties(H5Pcreate(H5P_DATASET_CREATE));
   H5Pset_obj_track_times(properties.get(), false);
   H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data());
-  H5Pset_shuffle(properties.get());
-  H5Pset_deflate(properties.get(), compression_level);
+  if (!small) {
+    H5Pset_shuffle(properties.get());
+    H5Pset_deflate(properties.get(), compression_level);
+  }
   const Hdf5Handle array = own_array(H5Dcreate2(handle_.get(), name.c_str(), file_type(scalar), space.get(),
                                                 H5P_DEFAULT, properties.get(), H5P_DEFAULT));
   if (!array.valid()) fail("cannot write " + where(name));

@@ -101,7 +101,8 @@ FrameList no_frames(const Take& head) {
   return {head.skin.V.rows(), static_cast<Eigen::Index>(head.expressions.size()), 0, std::nullopt};
 }
 
-void append_frame(const Hdf5Group& root, FrameList& list, const TakeFrame& frame, const std::string& path) {
+/// Refuses a frame that does not fit the others, before anything is written.
+void check_frame(const FrameList& list, const TakeFrame& frame, const std::string& path) {
   const FrameSizes sizes = sizes_of(frame);
   const std::string here = fmt::format("{}: frame {}", path, list.frames);
   if (sizes.skin != list.skin_vertices || sizes.weights != list.expressions) {
@@ -110,12 +111,28 @@ void append_frame(const Hdf5Group& root, FrameList& list, const TakeFrame& frame
   }
   const std::string defect = defect_of(frame);
   if (!defect.empty()) fail(here + ": " + defect);
+  if (list.sizes && !(*list.sizes == sizes)) {
+    fail(here + " has a volume or velocities and others do not, or of another size");
+  }
+}
+
+/// Fails while the file is still whole: what HDF5 could only write by half would cost the frames before, too.
+void require_room(const std::string& path, const TakeFrame& frame) {
+  constexpr std::uintmax_t spare = 1 << 20;
+  const auto numbers = static_cast<std::uintmax_t>(frame.skin.size() + frame.volume.size() + frame.velocity.size());
+  std::error_code unknown;
+  const auto space = std::filesystem::space(std::filesystem::absolute(path).parent_path(), unknown);
+  if (!unknown && space.available < numbers * sizeof(float) + spare) {
+    fail(fmt::format("the disk of {} is full", path), "free some space; the same command with --resume goes on");
+  }
+}
+
+void append_frame(const Hdf5Group& root, FrameList& list, const TakeFrame& frame) {
   const Hdf5Group group = root.group("frame_data");
   if (!list.sizes) {
-    if (!group.has_array("numbers")) create_frames(group, sizes);
-    list.sizes = stored_sizes(group, 0);
+    list.sizes = sizes_of(frame);
+    create_frames(group, *list.sizes);
   }
-  if (!(*list.sizes == sizes)) fail(here + " has a volume or velocities and others do not, or of another size");
   store_frame(group, list.frames, frame);
   root.set(count_name, list.frames + 1);
   ++list.frames;
@@ -186,7 +203,9 @@ int TakeWriter::frames() const {
 void TakeWriter::append(const TakeFrame& frame) {
   const std::scoped_lock lock(hdf5_lock());
   if (!state_) fail("a frame was appended to a take that is finished");
-  append_frame(state_->file.root(), state_->list, frame, state_->path);
+  check_frame(state_->list, frame, state_->path);
+  require_room(state_->path, frame);
+  append_frame(state_->file.root(), state_->list, frame);
   state_->file.flush();
 }
 
@@ -250,7 +269,10 @@ void save(const std::string& path, const Take& take) {
   write_container(path, name_of(ContainerKind::take), [&](const Hdf5Group& root) {
     store_take_head(root, take);
     FrameList list = no_frames(take);
-    for (const TakeFrame& frame : take.frames) append_frame(root, list, frame, path);
+    for (const TakeFrame& frame : take.frames) {
+      check_frame(list, frame, path);
+      append_frame(root, list, frame);
+    }
   });
 }
 
