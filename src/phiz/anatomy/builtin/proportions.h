@@ -14,8 +14,8 @@ struct Proportions {
   // Midline of the skin, x = 0: (y, z).
   Vector2d vertex{0.140, -0.012}, opisthocranion{0.050, -0.1105}, trichion{0.103, 0.058}, glabella{0.047, 0.074},
       nasion{0.036, 0.071}, pronasale{0.000, 0.099}, subnasale{-0.013, 0.084}, labrale_superius{-0.030, 0.088},
-      stomion{-0.037, 0.084}, labrale_inferius{-0.045, 0.086}, sublabiale{-0.056, 0.078}, pogonion{-0.069, 0.080},
-      menton{-0.082, 0.067};
+      stomion{-0.037, 0.084}, labrale_inferius{-0.045, 0.086}, sublabiale{-0.056, 0.078}, pogonion{-0.069, 0.083},
+      menton{-0.083, 0.070};
   // Left side; the right side mirrors x.
   Vector3d eye_centre{0.0315, 0.027, 0.0525};
   double eye_radius = 0.0120;

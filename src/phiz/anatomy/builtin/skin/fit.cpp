@@ -62,36 +62,43 @@ struct Push {
 
 void fit_person(SkinForm& form, const Proportions& proportions, const IdentityParameters& q) {
   const std::vector<Push> pushes = {
-      {q.brow_ridge, {17, 45, 70}, {16, 7, 12}, {0, -0.3, 0.9}},
-      {q.forehead_slope, {0, 85, 66}, {50, 22, 40}, {0, 0, -0.8}},
-      {q.nose_bridge, {0, 18, 86}, {9, 12, 14}, {0, 0, 1.3}},
-      {q.nose_width, {17, -5, 79}, {7, 8, 10}, {0.3, 0, 0}},
-      {q.cheekbones, {48, 3, 52}, {17, 12, 18}, {1.0, 0.3, 1.2}},
-      {q.cheek_fullness, {46, -25, 55}, {16, 18, 20}, {1.8, 0, 1.4}},
-      {q.upper_lip, {0, -31, 88}, {22, 3.2, 12}, {0, 0.8, 0.6}},
-      {q.lower_lip, {0, -45, 86}, {21, 3.6, 12}, {0, -0.8, 0.7}},
-      {q.neck_thickness, {55, -125, -40}, {45, 45, 60}, {3, 0, 0}},
-      {q.neck_thickness, {0, -120, 10}, {40, 35, 30}, {0, 0, 2}},
-      {q.fat, {44, -38, 48}, {22, 24, 26}, {2.2, -0.5, 1.2}},
-      {q.fat, {10, -92, 40}, {32, 12, 28}, {0.4, -2.6, 0.8}},
-      {q.fat, {50, -110, -20}, {40, 40, 50}, {2, 0, 0.5}},
+      {q.brow_ridge, {17, 45, 70}, {16, 7, 12}, {0, -0.4, 1.2}},
+      {q.forehead_slope, {0, 85, 66}, {50, 22, 40}, {0, 0, -1.2}},
+      {q.nose_bridge, {0, 18, 86}, {9, 12, 14}, {0, 0, 2.0}},
+      {q.nose_width, {17, -5, 79}, {7, 8, 10}, {0.4, 0, 0}},
+      {q.cheekbones, {48, 3, 52}, {17, 12, 18}, {1.5, 0.4, 1.8}},
+      {q.cheek_fullness, {46, -25, 55}, {16, 18, 20}, {2.4, 0, 1.9}},
+      {q.upper_lip, {0, -31, 88}, {22, 3.2, 12}, {0, 1.1, 0.9}},
+      {q.lower_lip, {0, -45, 86}, {21, 3.6, 12}, {0, -1.1, 1.0}},
+      {q.neck_thickness, {55, -125, -40}, {45, 45, 60}, {4, 0, 0}},
+      {q.neck_thickness, {0, -120, 10}, {40, 35, 30}, {0, 0, 2.5}},
+      {q.fat, {44, -38, 48}, {22, 24, 26}, {3.0, -0.7, 1.6}},
+      {q.fat, {10, -92, 40}, {32, 14, 28}, {0.4, -3.6, 1.0}},
+      {q.fat, {50, -110, -20}, {40, 40, 50}, {2.5, 0, 0.8}},
   };
   const Warp warp(anchors(Proportions{}), anchors(proportions));
   const SkinTopology& topology = skin_topology();
-  for (int v = 0; v < topology.left_count(); ++v) {
-    if (!form.placed(v)) continue;
-    const Vector3d p = form.at(v);
-    Vector3d moved = p + warp.displacement(p);
+  const auto displacement = [&](const Vector3d& p) {
+    Vector3d d = warp.displacement(p);
     for (const Push& push : pushes)
       for (const double side : {1.0, -1.0}) {
         if (push.centre.x() == 0 && side < 0) continue;
         const Vector3d from(p.x() - side * push.centre.x(), p.y() - push.centre.y(), p.z() - push.centre.z());
         const double bell = std::exp(-0.5 * from.cwiseQuotient(push.radius).squaredNorm());
-        moved +=
-            push.amount * bell * Vector3d(side * push.displacement.x(), push.displacement.y(), push.displacement.z());
+        d += push.amount * bell * Vector3d(side * push.displacement.x(), push.displacement.y(), push.displacement.z());
       }
-    form.place(v, moved, form.weight[v]);
-  }
+    return d;
+  };
+  // The auricle keeps its form: each column moves with its root on the head.
+  std::vector<int> root(topology.left_count());
+  for (int v = 0; v < topology.left_count(); ++v) root[v] = v;
+  for (int c = 0; c < SkinTopology::ear_columns; ++c)
+    for (int ring = 1; ring <= SkinTopology::ear_rings; ++ring) root[topology.ear(ring, c)] = topology.ear(0, c);
+  for (int u = 1; u < 4; ++u)
+    for (int v = 1; v < 4; ++v) root[topology.concha(u, v)] = topology.ear(0, 4);
+  const MatrixX3d before = form.X;
+  for (int v = 0; v < topology.left_count(); ++v)
+    if (form.placed(v)) form.place(v, form.at(v) + displacement(before.row(root[v])), form.weight[v]);
 }
 
 }  // namespace phiz

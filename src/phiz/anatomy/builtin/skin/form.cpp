@@ -127,9 +127,11 @@ void fair(SkinForm& form, const SparseMatrixd& limit_mask) {
   }
   Eigen::SparseMatrix<double> sample(n, n);
   sample.setFromTriplets(entries.begin(), entries.end());
-  VectorXd areas;
-  const Eigen::SparseMatrix<double> A = bending(form.X, areas);
-  form.X = least_bending(A, sample, firmness.cwiseProduct(areas) / std::pow(smoothing_length, 4), places);
+  for (int pass = 0; pass < 2; ++pass) {  // the metric comes from the form before
+    VectorXd areas;
+    const Eigen::SparseMatrix<double> A = bending(form.X, areas);
+    form.X = least_bending(A, sample, firmness.cwiseProduct(areas) / std::pow(smoothing_length, 4), places);
+  }
   make_symmetric(form.X);
 }
 

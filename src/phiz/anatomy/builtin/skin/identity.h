@@ -11,7 +11,7 @@
 namespace phiz {
 
 /// All in standard deviations from the mean, 0 = mean; plausible within [-2.5, 2.5]. What one deviation is in
-/// millimetres stands in skin_identity.cpp.
+/// millimetres stands in identity.cpp.
 struct IdentityParameters {
   double head_length = 0;      ///< glabella to back of the head
   double head_width = 0;       ///< breadth of the vault
@@ -52,7 +52,8 @@ struct IdentityParameterName {
 inline constexpr int identity_parameter_count = 29;
 extern const std::array<IdentityParameterName, identity_parameter_count> identity_parameter_names;
 
-/// A plausible person: independent normal deviates, clamped to +-2. The same person for the same seed on every machine.
+/// A plausible adult: normal deviates, clamped to +-2.2, that hang together as they do in people through sex, size,
+/// weight and breadth of nose and lips. The same person for the same seed on every machine.
 IdentityParameters random_identity(std::uint64_t seed);
 
 /// The proportions of a person, for skin, skull and teeth alike. Parameters outside [-4, 4] or not finite are rejected

@@ -12,13 +12,15 @@ constexpr int n = SkinTopology::eye_columns;
 /// The inner edge of the lid margin about the centre of the mean eye (millimetres, x to the temple for the left eye),
 /// from the inner canthus over the upper lid to the outer canthus and back along the lower lid. z follows the eyeball
 /// where it can.
-constexpr double margin_x[n] = {-14.6, -11.6, -8.4, -4.6, -0.4, 4,    8,    11.2,
-                                13.2,  10.9,  7.4,  3.4,  -0.6, -4.6, -8.4, -11.6};
-constexpr double margin_y[n] = {-1.6, 1.0, 3.0, 4.3, 4.7, 4.4, 3.4, 1.9, 0.5, -1.9, -3.8, -4.9, -5.3, -4.9, -3.9, -2.7};
+constexpr double margin_x[n] = {-14.6, -11.6, -8.4, -4.6, -0.4, 4,    7.7,  10.4,
+                                11.8,  10.2,  7.2,  3.4,  -0.6, -4.6, -8.4, -11.6};
+constexpr double margin_y[n] = {-1.6, 0.9,  2.7,  3.9,  4.3,  4.1,  3.05, 1.5,
+                                0.45, -1.4, -3.2, -4.6, -5.1, -4.9, -3.9, -2.7};
 constexpr double margin_z[n] = {6.2, 6.8, 0, 0, 0, 0, 0, 0, 2.6, 0, 0, 0, 0, 0, 0, 6.6};  // least depth
 
 constexpr double clearance = 0.25;      // between eyeball and lid, millimetres
 constexpr double back_clearance = 0.9;  // where nobody sees it
+constexpr double caruncle = 1.3;        // how far it stands out from the eyeball
 constexpr double margin_width = 1.7;
 
 }  // namespace
@@ -31,9 +33,9 @@ void place_lids(SkinForm& form, const Proportions& proportions, const IdentityPa
   const Vector3d inner = proportions.endocanthion * 1e3 - centre, outer = proportions.exocanthion * 1e3 - centre;
   const Vector3d mean_inner = (mean.endocanthion - mean.eye_centre) * 1e3,
                  mean_outer = (mean.exocanthion - mean.eye_centre) * 1e3;
-  const double open = 1 + 0.08 * identity.eye_size;
+  const double person_open = 1 + 0.1 * identity.eye_size;
   // Moves with the canthi, linearly in between.
-  const auto margin = [&](int c) {
+  const auto margin = [&](int c, double open) {
     const double t = (margin_x[c] - margin_x[0]) / (margin_x[8] - margin_x[0]);
     const Vector3d shift = (1 - t) * (inner - mean_inner) + t * (outer - mean_outer);
     const double axis_y = (1 - t) * margin_y[0] + t * margin_y[8];
@@ -47,7 +49,7 @@ void place_lids(SkinForm& form, const Proportions& proportions, const IdentityPa
   for (int c = 0; c < n; ++c) {
     const double lid = std::sin(M_PI * (c < 8 ? c : 16 - c) / 8.0);  // 0 at the canthi, 1 in the middle
     const bool upper = c > 0 && c < 8;
-    const Vector3d inner_edge = margin(c);
+    const Vector3d inner_edge = margin(c, person_open);
     const Vector3d outer_edge =
         inner_edge + margin_width * (inner_edge.normalized() * 0.85 + Vector3d(0, (upper ? 0.35 : -0.3) * lid, 0.25));
     form.place(topology.eye(6, c), centre + inner_edge, 1e4);
@@ -66,18 +68,15 @@ void place_lids(SkinForm& form, const Proportions& proportions, const IdentityPa
       form.place(topology.eye(ring, c), centre + p, ring >= 3 ? 20 : ring);
     }
     // Socket: from the margin round the eyeball to the pole behind it. At the inner canthus the lining first runs over
-    // to the front of the eyeball: the caruncle. At the outer canthus it does so a little.
-    const bool caruncle = c == 0 || c == 1 || c == n - 1, outer_canthus = c == 8;
-    const Vector3d start = inner_edge.normalized();
-    const Vector3d around = Vector3d(start.x(), start.y(), 0).normalized();
-    const double angle0 = std::acos(std::clamp(start.z(), -1.0, 1.0));
+    // to the front of the eyeball, and swells to the caruncle.
+    const bool inner_canthus = c == 0 || c == 1 || c == n - 1;
+    const Vector3d start = margin(c, 1), around = Vector3d(start.x(), start.y(), 0).normalized();
+    const double angle0 = std::acos(std::clamp(inner_edge.normalized().z(), -1.0, 1.0));
     for (int ring = 7; ring <= 9; ++ring) {
-      constexpr double share[3] = {0.17, 0.50, 0.78}, caruncle_angle[3] = {1.02, 1.72, 2.42},
-                       canthus_angle[3] = {1.28, 1.86, 2.48};
-      const double angle = caruncle        ? caruncle_angle[ring - 7]
-                           : outer_canthus ? canthus_angle[ring - 7]
-                                           : angle0 + share[ring - 7] * (M_PI - angle0);
-      const double r = radius + (ring == 7 ? 0.62 : back_clearance);
+      constexpr double share[3] = {0.17, 0.50, 0.78}, canthus_angle[3] = {1.02, 1.72, 2.42};
+      const double angle = inner_canthus ? canthus_angle[ring - 7] : angle0 + share[ring - 7] * (M_PI - angle0);
+      const double above = ring > 7 ? back_clearance : c == 0 ? caruncle : inner_canthus ? clearance : 0.62;
+      const double r = radius + above;
       form.place(topology.eye(ring, c),
                  centre + r * Vector3d(std::sin(angle) * around.x(), std::sin(angle) * around.y(), std::cos(angle)),
                  1e4);

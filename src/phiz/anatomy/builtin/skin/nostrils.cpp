@@ -6,8 +6,8 @@ namespace phiz {
 void place_nostrils(SkinForm& form) {
   const SkinTopology& topology = skin_topology();
   // The tunnel narrows upwards and back, away from the rim's centre.
-  const Vector3d axis[4] = {{0, 0, 0}, {0.1, 2.2, -0.6}, {0, 6.5, -2.6}, {-0.6, 11, -6}};
-  constexpr double scale[4] = {1, 1.02, 0.86, 0.6};
+  const Vector3d axis[4] = {{0, 0, 0}, {0.1, 2, -0.6}, {0, 6.5, -2.6}, {-0.6, 11, -6}};
+  constexpr double scale[4] = {1, 0.94, 0.86, 0.6};
   Vector3d centre = Vector3d::Zero();
   for (int c = 0; c < SkinTopology::nostril_columns; ++c)
     centre += form.at(topology.nostril(0, c)) / SkinTopology::nostril_columns;

@@ -44,9 +44,9 @@ void place_vault(SkinForm& form) {
   const SkinTopology& topology = skin_topology();
   const Vault vault;
   for (int j = 11; j <= SkinTopology::rows; ++j)
-    for (int i = j < 20 ? 15 : j < 23 ? 14 : j == 23 ? 12 : 0; i <= SkinTopology::columns; ++i) {
+    for (int i = j < 13 ? 16 : j <= 20 ? 15 : j <= 23 ? 12 : 0; i <= SkinTopology::columns; ++i) {
       const int v = topology.sheet(i, j);
-      if (v < 0 || !form.placed(v) || (i == 14 && j == 20)) continue;
+      if (v < 0 || !form.placed(v)) continue;
       const double share = j == 24 && i < 12 ? 0.5 : 1.0;  // the forehead keeps some of its own form
       form.place(v, form.at(v) + share * (vault.under(form.at(v)) - form.at(v)),
                  j < 23 && i < 16          ? 0.15
