@@ -11,8 +11,8 @@ constexpr int n = SkinTopology::ear_columns;
 /// Where the auricle leaves the head, in its own plane (a backwards, b upwards) and the x of the head there;
 /// millimetres.
 constexpr double rim_a[n] = {0, -1.5, -1.5, -1.5, -1.5, -1.5, -0.5, 3.5, 9, 15, 20, 22.5, 22, 20, 15.2, 7.3};
-constexpr double rim_b[n] = {-22, -15.5, -9, -3, 3, 10, 18, 23.5, 26, 25.5, 20.5, 12.5, 4, -4.5, -14, -22.5};
-constexpr double rim_x[n] = {68, 69.5, 70.4, 71, 71.4, 71.7, 72, 71.8, 72.3, 72.4, 72.2, 71.4, 70.6, 69.6, 68, 67};
+constexpr double rim_b[n] = {-22, -15.5, -9, -3, 3, 10, 18, 23, 24.5, 23.2, 19.2, 12.5, 4, -4.5, -14, -22.5};
+constexpr double rim_x[n] = {68, 69.5, 70.4, 71, 71.4, 71.6, 71.6, 71.2, 71, 70.8, 71, 71, 70.4, 69.6, 68, 67};
 
 /// Points of the auricle in its own plane: a backwards, b upwards, h out from the head; millimetres. Columns as in
 /// SkinTopology: lobe's front, tragus (2..4), root of the helix (5), top (8), back (11), lobe (15).

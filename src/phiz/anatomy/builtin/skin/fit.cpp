@@ -89,16 +89,18 @@ void fit_person(SkinForm& form, const Proportions& proportions, const IdentityPa
       }
     return d;
   };
-  // The auricle keeps its form: each column moves with its root on the head.
-  std::vector<int> root(topology.left_count());
-  for (int v = 0; v < topology.left_count(); ++v) root[v] = v;
-  for (int c = 0; c < SkinTopology::ear_columns; ++c)
-    for (int ring = 1; ring <= SkinTopology::ear_rings; ++ring) root[topology.ear(ring, c)] = topology.ear(0, c);
+  // The auricle keeps its form: it moves as a whole, with its root on the head.
+  std::vector<double> in_ear(topology.left_count(), 0.0);
+  Vector3d with_root = Vector3d::Zero();
+  for (int c = 0; c < SkinTopology::ear_columns; ++c) {
+    with_root += displacement(form.at(topology.ear(0, c))) / SkinTopology::ear_columns;
+    for (int ring = 0; ring <= SkinTopology::ear_rings; ++ring) in_ear[topology.ear(ring, c)] = ring == 0 ? 0.5 : 1;
+  }
   for (int u = 1; u < 4; ++u)
-    for (int v = 1; v < 4; ++v) root[topology.concha(u, v)] = topology.ear(0, 4);
-  const MatrixX3d before = form.X;
+    for (int v = 1; v < 4; ++v) in_ear[topology.concha(u, v)] = 1;
   for (int v = 0; v < topology.left_count(); ++v)
-    if (form.placed(v)) form.place(v, form.at(v) + displacement(before.row(root[v])), form.weight[v]);
+    if (form.placed(v))
+      form.place(v, form.at(v) + in_ear[v] * with_root + (1 - in_ear[v]) * displacement(form.at(v)), form.weight[v]);
 }
 
 }  // namespace phiz

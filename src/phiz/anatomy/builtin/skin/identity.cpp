@@ -124,11 +124,11 @@ Proportions personalise(const Proportions& mean, const IdentityParameters& q) {
   p.endocanthion += spacing + Vector3d(0, -0.4 * q.eye_tilt, 0) * mm;
   p.exocanthion += spacing + Vector3d(0, 1.1 * q.eye_tilt, 0) * mm;
   // Lower face hangs together: everything below the nose moves with the length of the face.
-  const double nose_down = 2.6 * mm * q.nose_length, face_down = 4.2 * mm * q.face_length + 0.6 * nose_down;
+  const double nose_down = 3.2 * mm * q.nose_length, face_down = 4.8 * mm * q.face_length + 0.6 * nose_down;
   p.pronasale += Vector2d(-nose_down + 2.0 * mm * q.nose_tip - 0.6 * mm * q.face_length, 2.5 * mm * q.nose_projection);
   p.subnasale += Vector2d(-0.8 * nose_down - 0.2 * face_down, 0.6 * mm * q.nose_projection);
   p.alare += Vector3d(1.9 * q.nose_width * mm, -0.9 * nose_down - 0.15 * face_down, 0.3 * mm * q.nose_projection);
-  const double lip_down = 0.5 * face_down + 1.4 * mm * q.philtrum, chin_down = face_down + 2.4 * mm * q.chin_height;
+  const double lip_down = 0.5 * face_down + 1.4 * mm * q.philtrum, chin_down = face_down + 2.7 * mm * q.chin_height;
   p.labrale_superius.x() -= lip_down;
   p.stomion.x() -= lip_down;
   p.labrale_inferius.x() -= lip_down;
