@@ -59,10 +59,10 @@ const Vector3d arch_section(1.5, 1, 1);
 const std::array<BarNode, 7> mandible_body{{{{44, -43, 8}, 4.6},
                                             {{40.8, -49.5, 18}, 5.4},
                                             {{36.8, -54.5, 31}, 5.8},
-                                            {{31, -58.2, 43}, 6},
-                                            {{20, -62.5, 57}, 5.8},
-                                            {{8, -64, 63}, 5.6},
-                                            {{0, -64.5, 63.8}, 5.6}}};
+                                            {{31, -58.4, 44}, 6},
+                                            {{20, -63, 59}, 5.8},
+                                            {{8, -64.5, 65.5}, 5.6},
+                                            {{0, -65, 66.4}, 5.6}}};
 const Vector3d body_section(1, 0.56, 1);
 
 double brow_and_orbital_rim(const Vector3d& p) {
@@ -157,8 +157,8 @@ double cervical_column(const Vector3d& p, bool detailed) {
 
 double mandible_mm(const Vector3d& p) {
   double f = implicit::bar(p, mandible_body, body_section);
-  const double chin = ellipsoid(p, {0, -68.5, 64}, {11, 6, 5.5});
-  const double tubercle = ellipsoid(p, {12, -71, 61}, {6, 4, 4.5});
+  const double chin = ellipsoid(p, {0, -69, 67}, {11, 6, 5.5});
+  const double tubercle = ellipsoid(p, {12, -71.5, 64}, {6, 4, 4.5});
   f = blend(f, blend(chin, tubercle, 5), 6);
   // Ramus: a plate, thin in x.
   const double c = std::cos(0.12), s = std::sin(0.12);
