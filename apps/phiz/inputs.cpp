@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inputs.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "phiz/core/progress.h"
@@ -26,7 +28,7 @@ FaceModel load_model(const std::string& path) {
 Performance load_any_performance(const std::string& path) {
   if (lower_extension(path) == ".phiz") return load_performance(path);
   const LiveLinkRecording recording = read_live_link(path);
-  for (const std::string& note : recording.notes) announce(path + ": " + note);
+  for (const std::string& note : recording.notes) announce(fmt::format("{}: {}", path, note));
   return recording.performance;
 }
 
