@@ -112,7 +112,7 @@ Subject open_mesh(const SubjectOptions& options) {
   return subject;
 }
 
-Subject open_head(const SubjectOptions& options, std::shared_ptr<const HeadTemplate> head) {
+Subject open_head(const SubjectOptions& options, const std::shared_ptr<const HeadTemplate>& head) {
   Subject subject;
   subject.name = head->name;
   auto view = std::make_shared<HeadViewOptions>(options.view);
