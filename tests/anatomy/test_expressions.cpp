@@ -62,6 +62,49 @@ int folded_triangles(const MatrixX3d& V) {
   return count;
 }
 
+/// The skin with several expressions at the same weight.
+MatrixX3d skin_with(const std::vector<std::string>& names, double weight) {
+  MatrixX3d V = head().skin.V;
+  for (const std::string& name : names) V += weight * expression(name).displacement;
+  return V;
+}
+
+/// Pairs of triangles on and round the lips that pass through one another.
+std::size_t crossings_at_the_lips(const MatrixX3d& V) {
+  static const std::vector<int> faces = [] {
+    std::vector<char> near(static_cast<std::size_t>(head().skin.V.rows()), 0);
+    for (const char* name : {"upperLip", "lowerLip", "upperLipInner", "lowerLipInner"})
+      for (const int v : head().skin_regions.at(name)) near[static_cast<std::size_t>(v)] = 1;
+    std::vector<int> found;
+    for (int f = 0; f < head().skin.F.rows(); ++f)
+      for (int k = 0; k < 3; ++k)
+        if (near[static_cast<std::size_t>(head().skin.F(f, k))]) {
+          found.push_back(f);
+          break;
+        }
+    return found;
+  }();
+  TriangleMesh lips;
+  lips.V = V;
+  lips.F = head().skin.F(faces, Eigen::all);
+  return self_intersections(lips).size();
+}
+
+/// By how much the lips are farther apart than at rest, at the most and upright, millimetres.
+double parting(const MatrixX3d& V) {
+  const VectorXi &upper = head().skin_regions.at("loop:upperLipLine"),
+                 &lower = head().skin_regions.at("loop:lowerLipLine");
+  const MatrixX3d& rest = head().skin.V;
+  double most = 0;
+  for (const int u : upper) {
+    int nearest = lower[0];
+    for (const int l : lower)
+      if ((rest.row(l) - rest.row(u)).norm() < (rest.row(nearest) - rest.row(u)).norm()) nearest = l;
+    most = std::max(most, 1e3 * ((V(u, 1) - V(nearest, 1)) - (rest(u, 1) - rest(nearest, 1))));
+  }
+  return most;
+}
+
 // Marks: 17-21 right brow, 22-26 left brow (22 inner), 31-35 nostrils, 42 inner and 45 outer corner of the left eye,
 // 48 right and 54 left corner of the mouth, 51 top and 57 bottom of the lips, 62 and 66 their parting, 8 chin.
 constexpr int chin = 8, left_inner_brow = 22, left_outer_brow = 25, left_ala = 35, right_corner = 48, left_corner = 54,
@@ -119,11 +162,14 @@ TEST(Expressions, MoveWhatTheirNamesSay) {
       {"jawLeft", chin, left, 4},
       {"jawRight", chin, -left, 4},
       {"jawOpen", chin, -up, 20},
-      {"mouthFunnel", lip_top, forward, 3},
+      {"mouthFunnel", lip_top, forward, 4},
+      {"mouthFunnel", parting_above, forward, 5},
       {"mouthFunnel", parting_above, up, 1.5},
       {"mouthFunnel", parting_below, -up, 1.5},
       {"mouthPucker", lip_top, forward, 4},
       {"mouthPucker", lip_bottom, forward, 3},
+      {"mouthPucker", parting_above, forward, 5},
+      {"mouthPucker", parting_below, forward, 5},
       {"mouthLeft", lip_top, left, 3},
       {"mouthRight", lip_top, -left, 3},
       {"mouthSmileLeft", left_corner, up, 4},
@@ -208,6 +254,82 @@ TEST(Expressions, PuckerNarrowsTheMouthSmilesWidenIt) {
   EXPECT_LT((place("mouthPucker", left_corner) - place("mouthPucker", right_corner)).norm(), 0.75 * width);
   const Vector3d left = place("mouthSmileLeft", left_corner), right = place("mouthSmileRight", right_corner);
   EXPECT_GT((left - right).norm(), 1.1 * width);
+}
+
+TEST(Expressions, LipsDoNotPassThroughOneAnother) {
+  const std::size_t neutral = crossings_at_the_lips(head().skin.V);
+  std::vector<std::vector<std::string>> played = {{"jawOpen", "mouthClose"}};
+  for (const std::string_view name : expression_names) {
+    const std::string one(name), other = other_side(name);
+    if (one == "mouthClose" || one.ends_with("Right")) continue;  // made for jawOpen; mirrored
+    played.push_back({one});
+    const bool press = one == "mouthPressLeft";  // both together press harder than shut: left to the contact of a take
+    if (other != one && one != "mouthLeft" && one != "jawLeft" && !press) played.push_back({one, other});
+  }
+  for (const auto& names : played)
+    for (const double weight : {0.5, 1.0})
+      EXPECT_LE(crossings_at_the_lips(skin_with(names, weight)), neutral) << names.back() << " at " << weight;
+}
+
+TEST(Expressions, ClosedLipsStayClosed) {
+  for (const double weight : {0.1, 0.4, 0.7, 1.0})
+    EXPECT_LT(parting(skin_with({"jawOpen", "mouthClose"}, weight)), 0.5) << "over a jaw open by " << weight;
+  const std::vector<std::vector<std::string>> closed = {{"mouthPucker"},
+                                                        {"cheekPuff"},
+                                                        {"mouthLeft"},
+                                                        {"mouthSmileLeft", "mouthSmileRight"},
+                                                        {"mouthFrownLeft", "mouthFrownRight"},
+                                                        {"mouthDimpleLeft", "mouthDimpleRight"},
+                                                        {"mouthStretchLeft", "mouthStretchRight"},
+                                                        {"mouthPressLeft", "mouthPressRight"}};
+  for (const auto& names : closed) EXPECT_LT(parting(skin_with(names, 1)), 1.0) << names.front();
+}
+
+TEST(Expressions, RollingHidesTheRedOfTheLip) {
+  const auto height = [](const std::string& name, int border, int line) {
+    return std::abs(place(name, border).y() - place(name, line).y());
+  };
+  EXPECT_LT(height("mouthRollUpper", lip_top, parting_above), 0.65 * height("jawForward", lip_top, parting_above));
+  EXPECT_LT(height("mouthRollLower", lip_bottom, parting_below),
+            0.65 * height("jawForward", lip_bottom, parting_below));
+}
+
+TEST(Expressions, AnOpenMouthIsTallerThanWideAndKeepsTheVolumeOfTheFlesh) {
+  EXPECT_GT((place("jawOpen", lip_top) - place("jawOpen", lip_bottom)).norm(),
+            (place("jawOpen", left_corner) - place("jawOpen", right_corner)).norm());
+  double flesh = 0;
+  const MatrixX3d& V = head().volume.V;
+  for (Eigen::Index t = 0; t < head().volume.T.rows(); ++t) {
+    if (head().volume.region[t] != Tissue::flesh) continue;
+    const auto T = head().volume.T.row(t);
+    const Vector3d a = V.row(T[0]), b = V.row(T[1]), c = V.row(T[2]), d = V.row(T[3]);
+    flesh += (b - a).cross(c - a).dot(d - a) / 6;
+  }
+  const double rest = signed_volume(head().skin.V, head().skin.F);
+  for (const std::string_view name : expression_names)
+    EXPECT_LT(std::abs(signed_volume(skin_with({std::string(name)}, 1), head().skin.F) - rest), 0.02 * std::abs(flesh))
+        << name;
+}
+
+TEST(Expressions, CheekPuffBulgesBothCheeks) {
+  EXPECT_GT(largest("cheekPuff", "leftCheek"), 6);
+  EXPECT_GT(largest("cheekPuff", "rightCheek"), 6);
+}
+
+TEST(Expressions, LidsStayInFrontOfTheEyeballOnTheirWay) {
+  const double radius = Proportions{}.eye_radius;
+  const auto height = [](const std::string& name, double weight, int v) {
+    return (head().skin.V.row(v) + weight * expression(name).displacement.row(v) - head().left_eye_centre.transpose())
+        .norm();
+  };
+  for (const char* name : {"eyeBlinkLeft", "eyeSquintLeft", "eyeWideLeft", "eyeLookUpLeft", "eyeLookDownLeft"}) {
+    for (const char* region : {"leftUpperLid", "leftLowerLid"})
+      for (const int v : head().skin_regions.at(region))
+        EXPECT_GT(height(name, 1, v), radius - 0.0002) << name << ", " << region << " vertex " << v;
+    // Halfway the edge that is seen goes straight where the lid slides round the eyeball.
+    for (const char* edge : {"loop:leftUpperLidMargin", "loop:leftLowerLidMargin"})
+      for (const int v : head().skin_regions.at(edge)) EXPECT_GT(height(name, 0.5, v), radius) << name << ", " << edge;
+  }
 }
 
 TEST(Expressions, FoldNoTriangleOver) {

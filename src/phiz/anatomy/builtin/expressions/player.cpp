@@ -43,7 +43,7 @@ VectorXd uprightness(const MatrixX3d& V, const MatrixX3i& F) {
 }
 
 /// Smooths the displacement round triangles that it folds over, or nearly so when they are not at rest, until there are
-/// none or 40 rounds are over.
+/// none or 40 rounds are over; farther and farther round those that resist.
 void mend_folds(const TriangleMesh& skin, const std::vector<std::vector<int>>& neighbours, MatrixX3d& D) {
   const VectorXd at_rest = uprightness(skin.V, skin.F);
   for (int round = 0; round < 40; ++round) {
@@ -51,13 +51,16 @@ void mend_folds(const TriangleMesh& skin, const std::vector<std::vector<int>>& n
     std::set<int> touched;
     for (Eigen::Index f = 0; f < skin.F.rows(); ++f) {
       if (now[f] >= (at_rest[f] > 0.4 ? 0.15 : 0.0)) continue;
-      for (int k = 0; k < 3; ++k) {
-        touched.insert(skin.F(f, k));
-        const auto& ring = neighbours[static_cast<std::size_t>(skin.F(f, k))];
-        touched.insert(ring.begin(), ring.end());
-      }
+      for (int k = 0; k < 3; ++k) touched.insert(skin.F(f, k));
     }
     if (touched.empty()) return;
+    for (int ring = 0; ring <= round / 10; ++ring) {
+      const std::set<int> inner = touched;
+      for (const int v : inner) {
+        const auto& next = neighbours[static_cast<std::size_t>(v)];
+        touched.insert(next.begin(), next.end());
+      }
+    }
     const MatrixX3d before = D;
     for (const int v : touched) {
       const auto& ring = neighbours[static_cast<std::size_t>(v)];

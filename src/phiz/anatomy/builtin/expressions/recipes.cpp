@@ -35,7 +35,8 @@ std::vector<ExpressionRecipe> eye_recipes() {
                  {"orbicularisOculi", 0.05, Part::upper, 0.5, 1},
                  {"zygomaticusMinor", 0.05},
                  {"levatorLabiiSuperioris", 0.03}},
-       .lids = {.upper = 0.04, .lower = 0.20}},
+       .lids = {.upper = 0.04, .lower = 0.20},
+       .closed = true},
   };
 }
 
@@ -54,7 +55,7 @@ std::vector<ExpressionRecipe> brow_and_nose_recipes() {
                  {"corrugatorLeft", 0.06},
                  {"corrugatorRight", 0.06}}},
       // AU2
-      {.name = "browOuterUpLeft", .paired = true, .pulls = {{"frontalis", 0.24, Part::whole, 0.5, 1}}},
+      {.name = "browOuterUpLeft", .paired = true, .pulls = {{"frontalis", 0.20, Part::whole, 0.55, 1}}},
       // AU9
       {.name = "noseSneerLeft",
        .paired = true,
@@ -94,7 +95,7 @@ std::vector<ExpressionRecipe> lip_ring_recipes() {
       // AU22: open, round, turned outward.
       {.name = "mouthFunnel",
        .pulls = {{"orbicularisOris", 0.12}},
-       .upper_lip = {{.up = 4, .out = 9.5, .roll = 26},
+       .upper_lip = {{.up = 4, .out = 10, .roll = 26},
                      {.up = 2.8, .out = 8.8, .wide = -5.2, .roll = 24},
                      {.out = 6.5, .wide = -10.5, .roll = 8},
                      2.5},
