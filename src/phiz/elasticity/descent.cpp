@@ -192,12 +192,12 @@ SolveStatistics Descent::run(double* x) {
     find_step(contact, g.get(), v.get(), p.get());
     const bool plain = options_.history > 0 && inverse_.pairs() == 0;
     const double contact_work = lambda_.dot(row_motion_);
-    const double decrease = contact_work - dot(g.get(), p.get(), size);
+    const Eigen::VectorXd products = dots({g.get(), last_p.get(), p.get()}, p.get(), size);
+    const double decrease = contact_work - products[0];
     const double reach = longest_move(p.get(), system_.free);
     // Where contacts switch from face to face two states can call each other for ever; steps that turn back are
     // shortened.
-    const double back = dot(p.get(), last_p.get(), size);
-    const double length2 = dot(p.get(), p.get(), size);
+    const double back = products[1], length2 = products[2];
     if (!contact.rows.empty() && statistics.iterations > settle && back < -0.3 * std::sqrt(length2 * last_length2))
       relaxation *= 0.6;
     else

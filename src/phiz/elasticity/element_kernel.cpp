@@ -85,7 +85,7 @@ double EvaluateElements(const ElementBlocks& e, const TermWeights& w, const doub
         const Lane inverse_goal = hn::Div(hn::Set(d, 1.0), goal);
         Lane G[9];
         for (int k = 0; k < 9; ++k) G[k] = hn::Mul(inverse_goal, F[k]);
-        ClosestUnimodular3(d, G, T, 1e-15);  // a step of 3e-8 leaves a strain error of a few 1e-9
+        ClosestUnimodular3(d, G, T, 1e-12);  // a step of 1e-6 leaves a strain error of 1e-7
         const Lane volume = hn::Set(d, w.volume);
         for (int k = 0; k < 9; ++k) {
           const Lane delta = hn::NegMulAdd(goal, T[k], F[k]);

@@ -14,16 +14,25 @@ constexpr std::ptrdiff_t grain = 8192;
 
 }  // namespace
 
-double dot(const double* a, const double* b, std::ptrdiff_t size) {
-  return parallel_sum(size, grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    return Segment(a + begin, end - begin).dot(Segment(b + begin, end - begin));
+Eigen::VectorXd dots(const std::vector<const double*>& left, const double* right, std::ptrdiff_t size) {
+  const auto count = static_cast<Eigen::Index>(left.size());
+  Eigen::MatrixXd parts(count, (size + grain - 1) / grain);
+  parallel_chunks(size, grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    const Segment segment(right + begin, end - begin);
+    for (Eigen::Index k = 0; k < count; ++k)
+      parts(k, begin / grain) = Segment(left[static_cast<std::size_t>(k)] + begin, end - begin).dot(segment);
   });
+  return parts.rowwise().sum();
+}
+
+double dot(const double* left, const double* right, std::ptrdiff_t size) {
+  return dots({left}, right, size)[0];
 }
 
 LowRankInverse::LowRankInverse(std::ptrdiff_t size, int history)
     : size_(size), history_(std::max(history, 1)), sy_(history_, history_), yz_(history_, history_) {
   for (int k = 0; k < history_; ++k)
-    for (auto* set : {&s_, &y_, &z_}) set->push_back(hwy::AllocateAligned<double>(static_cast<std::size_t>(size)));
+    for (auto* set : {&s_, &z_}) set->push_back(hwy::AllocateAligned<double>(static_cast<std::size_t>(size)));
 }
 
 void LowRankInverse::clear() {
@@ -31,38 +40,45 @@ void LowRankInverse::clear() {
   gamma_ = 1;
 }
 
+std::vector<const double*> LowRankInverse::columns() const {
+  std::vector<const double*> all;
+  for (int k = 0; k < count_; ++k) all.push_back(s(k));
+  for (int k = 0; k < count_; ++k) all.push_back(z(k));
+  return all;
+}
+
 bool LowRankInverse::add(const double* step, const double* change, const double* inverse_change) {
-  const double curvature = dot(step, change, size_);
-  const double length = dot(change, inverse_change, size_);
+  std::vector<const double*> left = columns();
+  left.insert(left.end(), {step, inverse_change});
+  const Eigen::VectorXd products = dots(left, change, size_);
+  const double curvature = products[2 * count_], length = products[2 * count_ + 1];
   if (!(length > 0) || !(curvature > 1e-8 * length)) return false;
+  int dropped = 0;
   if (count_ == history_) {
     const int kept = history_ - 1;
     sy_.topLeftCorner(kept, kept) = sy_.bottomRightCorner(kept, kept).eval();
     yz_.topLeftCorner(kept, kept) = yz_.bottomRightCorner(kept, kept).eval();
     first_ = slot(1);
-    --count_;
+    dropped = 1;
   }
-  const auto place = static_cast<std::size_t>(slot(count_));
+  const int before = count_, last = count_ - dropped;
+  for (int k = 0; k < last; ++k) {
+    sy_(k, last) = products[k + dropped];
+    yz_(k, last) = yz_(last, k) = products[before + k + dropped];
+  }
+  sy_(last, last) = curvature;
+  yz_(last, last) = length;
+  const auto place = static_cast<std::size_t>(slot(last));
   std::copy_n(step, size_, s_[place].get());
-  std::copy_n(change, size_, y_[place].get());
   std::copy_n(inverse_change, size_, z_[place].get());
-  sy_(count_, count_) = curvature;
-  yz_(count_, count_) = length;
-  for (int k = 0; k < count_; ++k) {
-    sy_(k, count_) = dot(s(k), change, size_);
-    yz_(k, count_) = yz_(count_, k) = dot(z(k), change, size_);
-  }
-  ++count_;
+  count_ = last + 1;
   gamma_ = curvature / length;
   return true;
 }
 
 Eigen::VectorXd LowRankInverse::project(const double* v) const {
-  Eigen::VectorXd u(2 * count_);
-  for (int k = 0; k < count_; ++k) {
-    u[k] = dot(s(k), v, size_);
-    u[count_ + k] = gamma_ * dot(z(k), v, size_);
-  }
+  Eigen::VectorXd u = dots(columns(), v, size_);
+  u.tail(count_) *= gamma_;
   return u;
 }
 

@@ -38,8 +38,9 @@ class LowRankInverse {
   void combine(const double* inverse_v, const Eigen::VectorXd& u, double sign, double* y) const;
 
  private:
+  /// S and Z, oldest pair first.
+  std::vector<const double*> columns() const;
   const double* s(int pair) const { return s_[static_cast<std::size_t>(slot(pair))].get(); }
-  const double* y(int pair) const { return y_[static_cast<std::size_t>(slot(pair))].get(); }
   const double* z(int pair) const { return z_[static_cast<std::size_t>(slot(pair))].get(); }
   int slot(int pair) const { return (first_ + pair) % history_; }
 
@@ -47,11 +48,12 @@ class LowRankInverse {
   int history_;
   int first_ = 0, count_ = 0;
   double gamma_ = 1;
-  std::vector<AlignedVector> s_, y_, z_;
+  std::vector<AlignedVector> s_, z_;
   Eigen::MatrixXd sy_, yz_;  ///< s_i . y_j and y_i . z_j, oldest first
 };
 
-/// Sum of a_i b_i, the same bits for any number of threads.
-double dot(const double* a, const double* b, std::ptrdiff_t size);
+/// Products left_k . right in one pass, the same bits for any number of threads.
+Eigen::VectorXd dots(const std::vector<const double*>& left, const double* right, std::ptrdiff_t size);
+double dot(const double* left, const double* right, std::ptrdiff_t size);
 
 }  // namespace phiz

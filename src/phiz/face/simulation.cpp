@@ -253,12 +253,17 @@ const MatrixX3d& Simulation::positions() const {
 
 MatrixX3d Simulation::skin() const {
   const HeadTemplate& head = parts_->model->head;
-  const MatrixX3d moved = parts_->rows_of_skin(parts_->x) - parts_->skin_rest;
+  const Eigen::Matrix3Xd moved = (parts_->rows_of_skin(parts_->x) - parts_->skin_rest).transpose();
   MatrixX3d drawn(head.skin.V.rows(), 3);
-  parallel_chunks(drawn.rows(), 2048, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    drawn.middleRows(begin, end - begin) =
-        head.skin.V.middleRows(begin, end - begin) + head.skin_interpolation.middleRows(begin, end - begin) * moved;
-  });
+  parallel_for(
+      drawn.rows(),
+      [&](std::ptrdiff_t v) {
+        Vector3d p = head.skin.V.row(v);
+        for (SparseMatrixd::InnerIterator it(head.skin_interpolation, v); it; ++it)
+          p += it.value() * moved.col(it.col());
+        drawn.row(v) = p;
+      },
+      2048);
   parts_->folds.mend(drawn);
   return drawn;
 }
