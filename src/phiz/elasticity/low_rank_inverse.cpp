@@ -42,6 +42,7 @@ void LowRankInverse::clear() {
 
 std::vector<const double*> LowRankInverse::columns() const {
   std::vector<const double*> all;
+  all.reserve(static_cast<std::size_t>(2 * count_));
   for (int k = 0; k < count_; ++k) all.push_back(s(k));
   for (int k = 0; k < count_; ++k) all.push_back(z(k));
   return all;

@@ -73,7 +73,7 @@ VectorXi elimination_order(const SparseMatrixd& pattern) {
   LowerTriangle lower(pattern);
   cholmod_factor* L = cholmod_analyze(&lower.sparse, &c.common);
   if (L == nullptr) fail("cannot order the elastic system");
-  const VectorXi order = Eigen::Map<const VectorXi>(static_cast<const int*>(L->Perm), pattern.rows());
+  VectorXi order = Eigen::Map<const VectorXi>(static_cast<const int*>(L->Perm), pattern.rows());
   cholmod_free_factor(&L, &c.common);
   return order;
 }
@@ -220,9 +220,10 @@ void VertexSolver::Factor::divide(const std::vector<int>& parent) {
       continue;
     }
     top.push_back(k);
-    for (int r = 0; r < supernodes[u].columns; ++r) {
-      top_id[static_cast<std::size_t>(supernodes[u].first + r)] = static_cast<int>(top_rows.size());
-      top_rows.push_back(supernodes[u].first + r);
+    for (int c = 0; c < supernodes[u].columns; ++c) {
+      const int row = supernodes[u].first + c;
+      top_id[static_cast<std::size_t>(row)] = static_cast<int>(top_rows.size());
+      top_rows.push_back(row);
     }
   }
   for (int k = 0; k < count; ++k) {

@@ -49,8 +49,8 @@ class Lattice {
     const int extra = is_corner ? 1 : 0;
     const std::int64_t n = is_corner ? point : point - corners_;
     const std::int64_t nx = cells_[0] + extra, ny = cells_[1] + extra;
-    const Vector3d index(static_cast<double>(n % nx), static_cast<double>((n / nx) % ny),
-                         static_cast<double>(n / (nx * ny)));
+    const std::int64_t x = n % nx, y = (n / nx) % ny, z = n / (nx * ny);
+    const Vector3d index(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
     return low_ + spacing_ * (index + Vector3d::Constant(is_corner ? 0.0 : 0.5));
   }
 

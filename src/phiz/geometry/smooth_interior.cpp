@@ -100,9 +100,8 @@ int smooth_interior(TetMesh& mesh, const std::vector<char>& fixed, int passes) {
       double step = 0.3 * star.shortest_spoke(best);
       for (int trial = 0; trial < 24; ++trial) {
         const Vector3d direction(random.normal(), random.normal(), random.normal());
-        const Vector3d base = best;
-        if (!attempt(base + step * direction.normalized()) && !attempt(base - step * direction.normalized()))
-          step *= 0.8;
+        const Vector3d move = step * direction.normalized();
+        if (!attempt(best + move) && !attempt(best - move)) step *= 0.8;
       }
       if (reached.is_better_than(before)) {
         mesh.V.row(v) = best;

@@ -47,7 +47,7 @@ void read_frames(std::string_view bytes, std::size_t offset, std::int64_t frames
   }
 }
 
-void write_cache(const std::string& path, const PointCache& cache, std::string header, std::endian order) {
+void write_cache(const std::string& path, const PointCache& cache, const std::string& header, std::endian order) {
   const auto points = cache.frames.empty() ? 0 : cache.frames[0].rows();
   if (points == 0) fail("cannot write " + path + ": there are no points");
   OutputFile file(path);

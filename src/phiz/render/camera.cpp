@@ -134,6 +134,7 @@ View view_from_name(std::string_view name) {
 const std::vector<View>& all_views() {
   static const std::vector<View> views = [] {
     std::vector<View> v;
+    v.reserve(std::size(view_specs));
     for (const ViewSpec& s : view_specs) v.push_back(s.view);
     return v;
   }();

@@ -18,8 +18,6 @@
 #include "phiz/core/error.h"
 #include "phiz/io/output_file.h"
 
-extern char** environ;
-
 namespace phiz {
 
 struct FilmWriter::Encoder {
@@ -116,6 +114,7 @@ void FilmWriter::Encoder::start(int frame_width, int frame_height) {
                                     "mp4",
                                     temporary};
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& w : words) arguments.push_back(w.data());
   arguments.push_back(nullptr);
 

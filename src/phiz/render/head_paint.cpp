@@ -175,7 +175,7 @@ std::function<Vector3d(const Vector3d&)> eye_pattern(const Vector3d& centre, dou
     const Vector3d white(1.0, 0.97, 0.93);
     // Veins and a warm tone away from the iris.
     const double vein = std::pow(ring_noise(around + 0.4 * std::sin(9 * rho), 23, 7), 6) * smooth_step(0.6, 0.95, rho);
-    const Vector3d sclera =
+    Vector3d sclera =
         white.cwiseProduct(Vector3d(1, 1 - 0.30 * vein, 1 - 0.32 * vein))
             .cwiseProduct(Vector3d(1, 1 - 0.10 * smooth_step(0.6, 1, rho), 1 - 0.14 * smooth_step(0.6, 1, rho)));
     if (p.z() < 0) return sclera;

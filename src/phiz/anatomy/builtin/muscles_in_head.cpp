@@ -56,7 +56,7 @@ struct Layers {
 
   /// The point under p at `depth` between floor (0) and skin (1).
   Vector3d settle(const Vector3d& p, double depth) const {
-    const Vector3d top = skin.closest_point(p).position;
+    Vector3d top = skin.closest_point(p).position;
     if (floor.rows() == 0) return top;
     Eigen::Index nearest = 0;
     (floor.rowwise() - top.transpose()).rowwise().squaredNorm().minCoeff(&nearest);

@@ -57,7 +57,7 @@ void place_lids(SkinForm& form, const Proportions& proportions, const IdentityPa
     // Across the lid to the rim on the sheet: fraction of the way and distance from the eyeball's surface.
     const Vector3d rim = form.at(topology.eye(0, c)) - centre;
     const double fraction[5] = {1, upper ? 0.77 : 0.76, upper ? 0.54 : 0.53, upper ? 0.40 : 0.36, upper ? 0.26 : 0.18};
-    const double height[5] = {0, 0, upper ? 4.9 : 4.6, upper ? 2.2 : 2.9, upper ? 2.3 : 2.3};
+    const double height[5] = {0, 0, upper ? 4.9 : 4.6, upper ? 2.2 : 2.9, 2.3};
     const double hug[5] = {0, 0, upper ? 0.15 : 0.6, upper ? 0.5 : 1,
                            upper ? 0.75 : 1};  // how closely the lid follows the ball
     for (int ring = 1; ring <= 4; ++ring) {

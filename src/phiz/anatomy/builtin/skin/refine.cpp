@@ -199,7 +199,7 @@ RefinedSkin refine(const SkinSurface& skin, int level) {
   check_level(level);
   Subdivision fine = subdivide(skin.cage, level);
   RefinedSkin refined;
-  refined.from_cage = std::move(fine.limit);
+  refined.from_cage.swap(fine.limit);
   refined.quads.V = refined.from_cage * skin.cage.V;
   refined.quads.faces = std::move(fine.faces);
   refined.quads.UV = std::move(fine.UV);

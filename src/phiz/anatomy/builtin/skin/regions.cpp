@@ -170,7 +170,7 @@ std::vector<Landmark> skin_landmarks() {
   left(8, t.sheet(0, 5));
   for (int k = 0; k < 8; ++k) pair(9 + k, 7 - k, t.sheet(jaw[k][0], jaw[k][1]));
   // 17..26 brows.
-  for (int k = 0; k < 5; ++k) pair(22 + k, 21 - k, t.sheet(6 + k, k == 0 ? 22 : 22));
+  for (int k = 0; k < 5; ++k) pair(22 + k, 21 - k, t.sheet(6 + k, 22));
   // 27..35 nose.
   left(27, t.sheet(0, 20));
   left(28, t.sheet(0, 18));
