@@ -21,6 +21,9 @@ constexpr int settle = 5;
 /// See run().
 constexpr double plain_shortfall = 10;
 
+/// The factor bounds the curvature from above: where the first step need not be the plain one, it is longer by this.
+constexpr double first_stretch = 1.6;
+
 double longest_move(const double* p, std::ptrdiff_t rows) {
   double longest2 = 0;
   for (std::ptrdiff_t r = 0; r < rows; ++r)
@@ -49,7 +52,7 @@ Descent::Descent(ElasticSystem& system, const SolveOptions& options, ContactScen
     : system_(system),
       options_(options),
       contacts_(contacts),
-      inverse_(system.size(), std::max(1, options.history)),
+      inverse_(system.size(), std::max(1, options.history), options.history > 0 ? first_stretch : 1),
       contact_force_(hwy::AllocateAligned<double>(static_cast<std::size_t>(system.size()))),
       inverse_force_(hwy::AllocateAligned<double>(static_cast<std::size_t>(system.size()))) {}
 

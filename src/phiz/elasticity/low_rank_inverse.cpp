@@ -29,8 +29,8 @@ double dot(const double* left, const double* right, std::ptrdiff_t size) {
   return dots({left}, right, size)[0];
 }
 
-LowRankInverse::LowRankInverse(std::ptrdiff_t size, int history)
-    : size_(size), history_(std::max(history, 1)), sy_(history_, history_), yz_(history_, history_) {
+LowRankInverse::LowRankInverse(std::ptrdiff_t size, int history, double gamma)
+    : size_(size), history_(std::max(history, 1)), gamma_(gamma), sy_(history_, history_), yz_(history_, history_) {
   for (int k = 0; k < history_; ++k)
     for (auto* set : {&s_, &z_}) set->push_back(hwy::AllocateAligned<double>(static_cast<std::size_t>(size)));
 }

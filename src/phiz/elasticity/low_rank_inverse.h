@@ -15,8 +15,8 @@ using AlignedVector = hwy::AlignedFreeUniquePtr<double[]>;
 
 class LowRankInverse {
  public:
-  /// Vectors of `size` doubles; at most `history` pairs.
-  LowRankInverse(std::ptrdiff_t size, int history);
+  /// Vectors of `size` doubles; at most `history` pairs. `gamma`: scale of A^-1 before the first pair.
+  LowRankInverse(std::ptrdiff_t size, int history, double gamma = 1);
 
   void clear();
   int pairs() const { return count_; }
