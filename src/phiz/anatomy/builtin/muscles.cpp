@@ -183,6 +183,17 @@ std::vector<MuscleBundle> left_muscles(const Proportions& p, const Mask& mask) {
 
 }  // namespace
 
+FibrePoint nearest_on_fibre(const MatrixX3d& fibre, const Vector3d& p) {
+  FibrePoint best{0, 0, 1e30};
+  for (Eigen::Index i = 0; i + 1 < fibre.rows(); ++i) {
+    const Vector3d a = fibre.row(i), e = fibre.row(i + 1).transpose() - a;
+    const double t = std::clamp((p - a).dot(e) / std::max(e.squaredNorm(), 1e-18), 0.0, 1.0);
+    const double d = (a + t * e - p).squaredNorm();
+    if (d < best.squared_distance) best = {i, t, d};
+  }
+  return best;
+}
+
 std::vector<MuscleBundle> make_muscles(const Proportions& p) {
   const Mask mask(p);
   const double mm = 1e-3;

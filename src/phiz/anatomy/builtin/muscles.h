@@ -21,6 +21,15 @@ struct MuscleBundle {
   double insertion_depth = 0.75;  ///< where the insertion lies
 };
 
+/// The point of a fibre that is nearest to p.
+struct FibrePoint {
+  Eigen::Index piece = 0;       ///< between points `piece` and `piece` + 1
+  double share = 0;             ///< of the way from the first to the second
+  double squared_distance = 0;  ///< to p, square metres
+};
+/// `fibre`: a polyline of at least two points.
+FibrePoint nearest_on_fibre(const MatrixX3d& fibre, const Vector3d& p);
+
 /// All muscles, left before right, in a fixed order: 33 of expression, then masseter and temporalis. Exactly mirrored.
 /// The points lie near the skin that the proportions describe; settle_muscles puts them into a particular head.
 std::vector<MuscleBundle> make_muscles(const Proportions& proportions);

@@ -76,21 +76,6 @@ std::vector<Eigen::Vector4d> sample_points() {
   return points;
 }
 
-/// Distance from p to a polyline, squared, and the unit direction of the nearest piece.
-double distance_squared(const MatrixX3d& fibre, const Vector3d& p, Vector3d& direction) {
-  double best = 1e30;
-  for (Eigen::Index i = 0; i + 1 < fibre.rows(); ++i) {
-    const Vector3d a = fibre.row(i), e = fibre.row(i + 1).transpose() - a;
-    const double t = std::clamp((p - a).dot(e) / std::max(e.squaredNorm(), 1e-18), 0.0, 1.0);
-    const double d = (a + t * e - p).squaredNorm();
-    if (d < best) {
-      best = d;
-      direction = e.normalized();
-    }
-  }
-  return best;
-}
-
 Muscle fill(const HeadTemplate& head, const MuscleBundle& bundle, const std::vector<Eigen::Vector4d>& samples) {
   Eigen::AlignedBox3d box;
   for (const MatrixX3d& fibre : bundle.fibres)
@@ -117,11 +102,10 @@ Muscle fill(const HeadTemplate& head, const MuscleBundle& bundle, const std::vec
       double best = limit;
       Vector3d along = Vector3d::Zero();
       for (const MatrixX3d& fibre : bundle.fibres) {
-        Vector3d direction;
-        const double d = distance_squared(fibre, p, direction);
-        if (d < best) {
-          best = d;
-          along = direction;
+        const FibrePoint near = nearest_on_fibre(fibre, p);
+        if (near.squared_distance < best) {
+          best = near.squared_distance;
+          along = (fibre.row(near.piece + 1) - fibre.row(near.piece)).transpose().normalized();
         }
       }
       if (along.isZero()) continue;

@@ -6,6 +6,7 @@
 
 #include "phiz/anatomy/builtin/ease.h"
 #include "phiz/anatomy/builtin/expressions/skin.h"
+#include "phiz/anatomy/builtin/muscles.h"
 #include "phiz/core/error.h"
 
 namespace phiz {
@@ -27,21 +28,6 @@ Vector3d point_at(const MatrixX3d& fibre, const VectorXd& arc, double along) {
   while (i + 2 < arc.size() && arc[i + 1] < s) ++i;
   const double span = arc[i + 1] - arc[i], t = span > 0 ? (s - arc[i]) / span : 0;
   return ((1 - t) * fibre.row(i) + t * fibre.row(i + 1)).transpose();
-}
-
-/// Squared distance of p to a fibre, and where along it (0 to 1) the nearest point lies.
-double nearest(const MatrixX3d& fibre, const VectorXd& arc, const Vector3d& p, double& along) {
-  double best = 1e30;
-  for (Eigen::Index i = 0; i + 1 < fibre.rows(); ++i) {
-    const Vector3d a = fibre.row(i), e = fibre.row(i + 1).transpose() - a;
-    const double t = std::clamp((p - a).dot(e) / std::max(e.squaredNorm(), 1e-18), 0.0, 1.0);
-    const double d = (a + t * e - p).squaredNorm();
-    if (d < best) {
-      best = d;
-      along = (arc[i] + t * (arc[i + 1] - arc[i])) / arc[arc.size() - 1];
-    }
-  }
-  return best;
 }
 
 std::string full_name(const ExpressionRecipe& recipe, std::string_view muscle,
@@ -89,12 +75,13 @@ MusclePulls::MusclePulls(const HeadTemplate& head) : rest_(head.volume.V) {
       Reach best{v, -1, 0, 0};
       double distance = reach_distance * reach_distance;
       for (std::size_t f = 0; f < bundle.fibres.size(); ++f) {
-        double along = 0;
-        const double d = nearest(bundle.fibres[f], arcs[f], X, along);
-        if (d < distance) {
-          distance = d;
+        const FibrePoint near = nearest_on_fibre(bundle.fibres[f], X);
+        if (near.squared_distance < distance) {
+          const VectorXd& arc = arcs[f];
+          const double before = arc[near.piece], after = arc[near.piece + 1];
+          distance = near.squared_distance;
           best.fibre = static_cast<int>(f);
-          best.along = along;
+          best.along = (before + near.share * (after - before)) / arc[arc.size() - 1];
         }
       }
       if (best.fibre < 0) continue;
