@@ -86,7 +86,7 @@ TEST(Blend, StoredGradientsComeBack) {
 TEST(Blend, AllTetsAtOnceAgreeWithOneByOne) {
   const FaceModel model = build_volumetric_blendshapes(testing::small_head());
   const VectorXi soft = soft_tets(model.head);
-  ElementBlocks elements(model.head.volume.V, model.head.volume.T(soft, Eigen::all), VectorXd::Ones(soft.size()), {});
+  ElementBlocks<float> elements(model.head.volume.V, model.head.volume.T(soft, Eigen::all), VectorXd::Ones(soft.size()), {});
   std::vector<std::ptrdiff_t> slot(static_cast<std::size_t>(soft.size()));
   for (std::size_t t = 0; t < slot.size(); ++t) slot[t] = static_cast<std::ptrdiff_t>(t);
   const TargetBlender blender(model, soft, slot);
@@ -106,7 +106,7 @@ TEST(Blend, AllTetsAtOnceAgreeWithOneByOne) {
     }
     const Matrix3d expected = polar_blend(logs, stretches, weights);
     for (int k = 0; k < 9; ++k)
-      EXPECT_NEAR(elements.target[static_cast<std::size_t>(((t / 8) * 9 + k) * 8 + t % 8)], expected.data()[k], 1e-6);
+      EXPECT_NEAR(elements.target[ElementBlocks<float>::at(t, 9, k)], expected.data()[k], 1e-6);
   }
 }
 

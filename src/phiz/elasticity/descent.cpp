@@ -212,7 +212,7 @@ SolveStatistics Descent::run(double* x) {
 
     // Armijo's rule on the energy minus the work of the contact forces, which falls along p also out of penetrations. A
     // plain local/global step (no pairs) fulfils it by construction: the factor bounds the energy from above.
-    const double rounding = 1e-13 * std::abs(energy) + system_.smallest_energy;
+    const double rounding = system_.energy_rounding * std::abs(energy) + system_.smallest_energy;
     double next_energy = energy;
     bool accepted = false;
     for (int halving = 0; halving < 12 && std::isfinite(reach); ++halving) {

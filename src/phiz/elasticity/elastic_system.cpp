@@ -15,7 +15,7 @@ namespace phiz {
 
 namespace {
 
-constexpr std::ptrdiff_t block_grain = 64;
+constexpr std::ptrdiff_t block_grain = 32;
 constexpr std::ptrdiff_t row_grain = 512;
 
 void check(const ElasticBody& body) {
@@ -39,6 +39,14 @@ void check(const ElasticBody& body) {
       reject("elastic body", "an attachment names no vertex, or its weight or point is not usable");
   if (body.time_step < 0 || (body.time_step > 0 && (body.mass.size() != n || !(body.mass.minCoeff() >= 0))))
     reject("elastic body", "dynamics needs a mass per vertex and a positive time step");
+}
+
+template <class T>
+ElementForces<T> element_forces(const MatrixX3d& rest, const MatrixX4i& tets, const VectorXd& stiffness,
+                                const VectorXd& share) {
+  ElementForces<T> elements{ElementBlocks<T>(rest, tets, stiffness, share), nullptr};
+  elements.corners = hwy::AllocateAligned<T>(static_cast<std::size_t>(16 * elements.blocks.blocks * ElementBlocks<T>::width));
+  return elements;
 }
 
 /// Fails if a piece of connected vertices has nothing to hold it. `anchored`: per vertex.
@@ -145,23 +153,30 @@ ElasticSystem::ElasticSystem(const ElasticBody& body, const VectorXi& contact_ve
   }
   MatrixX3d rest(vertices, 3);
   for (int v = 0; v < vertices; ++v) rest.row(row_of[v]) = body.rest.row(v);
-  elements = std::make_unique<ElementBlocks>(rest, sorted, stiffness, sorted_share);
-  for (std::ptrdiff_t s = 0; s < elements->tets; ++s) rest_volume += elements->rest_volume[static_cast<std::size_t>(s)];
+  if (body.precision == Precision::single)
+    elements = element_forces<float>(rest, sorted, stiffness, sorted_share);
+  else
+    elements = element_forces<double>(rest, sorted, stiffness, sorted_share);
+  energy_rounding = body.precision == Precision::single ? 3e-8 : 1e-13;
 
   incidence_start.assign(static_cast<std::size_t>(vertices) + 1, 0);
   for (Eigen::Index i = 0; i < sorted.size(); ++i) ++incidence_start[static_cast<std::size_t>(sorted.data()[i]) + 1];
   std::partial_sum(incidence_start.begin(), incidence_start.end(), incidence_start.begin());
   incidence.resize(static_cast<std::size_t>(sorted.size()));
   std::vector<int> fill(incidence_start.begin(), incidence_start.end() - 1);
-  for (Eigen::Index s = 0; s < sorted.rows(); ++s)
-    for (int c = 0; c < 4; ++c)
-      incidence[static_cast<std::size_t>(fill[static_cast<std::size_t>(sorted(s, c))]++)] =
-          static_cast<int>(((s / 8) * 4 + c) * 8 + s % 8);
-  corner_gradient = hwy::AllocateAligned<double>(static_cast<std::size_t>(elements->blocks) * 128);
+  std::visit(
+      [&]<class T>(const ElementForces<T>&) {
+        for (Eigen::Index s = 0; s < sorted.rows(); ++s)
+          for (int c = 0; c < 4; ++c)
+            incidence[static_cast<std::size_t>(fill[static_cast<std::size_t>(sorted(s, c))]++)] =
+                static_cast<int>(ElementBlocks<T>::at(s, 4, c));
+      },
+      elements);
   prediction = hwy::AllocateAligned<double>(static_cast<std::size_t>(4 * vertices));
   force = hwy::AllocateAligned<double>(static_cast<std::size_t>(4 * vertices));
   std::fill_n(force.get(), 4 * vertices, 0.0);
   load(body.rest, prediction.get());
+  rest_volume = volume(prediction.get());
 
   compliance_row = VectorXi::Constant(free, -1);
   std::vector<int> contact_rows;
@@ -189,33 +204,66 @@ void ElasticSystem::store(const double* x, MatrixX3d& positions) const {
     for (int k = 0; k < 3; ++k) positions(v, k) = x[4 * static_cast<std::ptrdiff_t>(row_of[v]) + k];
 }
 
+void ElasticSystem::set_target(std::ptrdiff_t tet, const Matrix3d& F, const Matrix3d& stretch) {
+  const std::ptrdiff_t slot = slot_of[static_cast<std::size_t>(tet)];
+  constexpr int place[6] = {0, 4, 8, 3, 6, 7};
+  std::visit(
+      [&]<class T>(ElementForces<T>& e) {
+        for (int k = 0; k < 9; ++k) e.blocks.target[ElementBlocks<T>::at(slot, 9, k)] = static_cast<T>(F.data()[k]);
+        for (int k = 0; k < 6; ++k)
+          e.blocks.stretch[ElementBlocks<T>::at(slot, 6, k)] = static_cast<T>(stretch.data()[place[k]]);
+      },
+      elements);
+}
+
+double ElasticSystem::volume(const double* x) const {
+  return std::visit(
+      [&](const auto& e) {
+        return parallel_sum(e.blocks.tets, row_grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+          return deformed_volume(e.blocks, x, begin, end);
+        });
+      },
+      elements);
+}
+
 double ElasticSystem::evaluate(const double* x, double* gradient, std::ptrdiff_t rows) {
-  double energy = parallel_sum(elements->blocks, block_grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    return evaluate_elements(*elements, weights, x, corner_gradient.get(), begin, end);
-  });
-  energy += parallel_sum(rows, row_grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    double part = 0;
-    for (std::ptrdiff_t r = begin; r < end; ++r) {
-      Eigen::Vector4d g = Eigen::Vector4d::Zero();
-      for (int i = incidence_start[static_cast<std::size_t>(r)]; i < incidence_start[static_cast<std::size_t>(r) + 1];
-           ++i)
-        g += Eigen::Map<const Eigen::Vector4d>(corner_gradient.get() +
-                                               4 * static_cast<std::ptrdiff_t>(incidence[static_cast<std::size_t>(i)]));
-      const Eigen::Map<const Eigen::Vector4d> p(x + 4 * r);
-      if (inertia.size() > 0) {
-        const Eigen::Vector4d d = p - Eigen::Map<const Eigen::Vector4d>(prediction.get() + 4 * r);
-        part += 0.5 * inertia[r] * d.squaredNorm();
-        g += inertia[r] * d;
+  double energy = std::visit(
+      [&]<class T>(ElementForces<T>& e) {
+        const double sum = parallel_sum(e.blocks.blocks, block_grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+          return evaluate_elements(e.blocks, weights, x, e.corners.get(), begin, end);
+        });
+        parallel_for(
+            rows,
+            [&](std::ptrdiff_t r) {
+              Eigen::Vector4d g = Eigen::Vector4d::Zero();
+              for (const int corner : corners_of(r))
+                g += Eigen::Map<const Eigen::Vector4<T>>(e.corners.get() + 4 * static_cast<std::ptrdiff_t>(corner))
+                         .template cast<double>();
+              Eigen::Map<Eigen::Vector4d>(gradient + 4 * r) = g;
+            },
+            row_grain);
+        return sum;
+      },
+      elements);
+  if (inertia.size() > 0 || has_force)
+    energy += parallel_sum(rows, row_grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      double part = 0;
+      for (std::ptrdiff_t r = begin; r < end; ++r) {
+        const Eigen::Map<const Eigen::Vector4d> p(x + 4 * r);
+        Eigen::Map<Eigen::Vector4d> g(gradient + 4 * r);
+        if (inertia.size() > 0) {
+          const Eigen::Vector4d d = p - Eigen::Map<const Eigen::Vector4d>(prediction.get() + 4 * r);
+          part += 0.5 * inertia[r] * d.squaredNorm();
+          g += inertia[r] * d;
+        }
+        if (has_force) {
+          const Eigen::Map<const Eigen::Vector4d> f(force.get() + 4 * r);
+          part -= f.dot(p);
+          g -= f;
+        }
       }
-      if (has_force) {
-        const Eigen::Map<const Eigen::Vector4d> f(force.get() + 4 * r);
-        part -= f.dot(p);
-        g -= f;
-      }
-      Eigen::Map<Eigen::Vector4d>(gradient + 4 * r) = g;
-    }
-    return part;
-  });
+      return part;
+    });
   for (const Attachment& a : attachments) {
     if (a.vertex >= rows) continue;
     const Vector3d d = Eigen::Map<const Vector3d>(x + 4 * static_cast<std::ptrdiff_t>(a.vertex)) - a.point;
@@ -228,21 +276,22 @@ double ElasticSystem::evaluate(const double* x, double* gradient, std::ptrdiff_t
 }
 
 double ElasticSystem::force_scale() const {
-  return std::max(
-      smallest_force, std::sqrt(parallel_sum(free, row_grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-        double sum = 0;
-        for (std::ptrdiff_t r = begin; r < end; ++r) {
-          double magnitude = 0;
-          for (int i = incidence_start[static_cast<std::size_t>(r)];
-               i < incidence_start[static_cast<std::size_t>(r) + 1]; ++i)
-            magnitude +=
-                Eigen::Map<const Vector3d>(corner_gradient.get() +
-                                           4 * static_cast<std::ptrdiff_t>(incidence[static_cast<std::size_t>(i)]))
-                    .norm();
-          sum += magnitude * magnitude;
-        }
-        return sum;
-      })));
+  const double squares = std::visit(
+      [&]<class T>(const ElementForces<T>& e) {
+        return parallel_sum(free, row_grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+          double sum = 0;
+          for (std::ptrdiff_t r = begin; r < end; ++r) {
+            double magnitude = 0;
+            for (const int corner : corners_of(r))
+              magnitude += static_cast<double>(
+                  Eigen::Map<const Eigen::Vector3<T>>(e.corners.get() + 4 * static_cast<std::ptrdiff_t>(corner)).norm());
+            sum += magnitude * magnitude;
+          }
+          return sum;
+        });
+      },
+      elements);
+  return std::max(smallest_force, std::sqrt(squares));
 }
 
 }  // namespace phiz

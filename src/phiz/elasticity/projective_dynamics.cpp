@@ -18,20 +18,15 @@ ProjectiveDynamics::~ProjectiveDynamics() = default;
 ProjectiveDynamics::ProjectiveDynamics(ProjectiveDynamics&&) noexcept = default;
 ProjectiveDynamics& ProjectiveDynamics::operator=(ProjectiveDynamics&&) noexcept = default;
 
-ElementBlocks& ProjectiveDynamics::elements() {
-  return *system_->elements;
+ElementBlocks<float>& ProjectiveDynamics::elements() {
+  return std::get<ElementForces<float>>(system_->elements).blocks;
 }
 std::ptrdiff_t ProjectiveDynamics::slot(std::ptrdiff_t tet) const {
   return system_->slot_of[static_cast<std::size_t>(tet)];
 }
 
 void ProjectiveDynamics::set_target(std::ptrdiff_t tet, const Matrix3d& F, const Matrix3d& stretch) {
-  const std::ptrdiff_t s = slot(tet);
-  ElementBlocks& e = *system_->elements;
-  for (int k = 0; k < 9; ++k) e.target[static_cast<std::size_t>(((s / 8) * 9 + k) * 8 + s % 8)] = F.data()[k];
-  constexpr int place[6] = {0, 4, 8, 3, 6, 7};
-  for (int k = 0; k < 6; ++k)
-    e.stretch[static_cast<std::size_t>(((s / 8) * 6 + k) * 8 + s % 8)] = stretch.data()[place[k]];
+  system_->set_target(tet, F, stretch);
 }
 
 void ProjectiveDynamics::set_attachment(std::size_t index, const Vector3d& point, const Vector3d& normal) {
@@ -75,9 +70,7 @@ double ProjectiveDynamics::energy(const MatrixX3d& x, MatrixX3d* gradient) {
 double ProjectiveDynamics::volume(const MatrixX3d& x) const {
   const AlignedVector state = hwy::AllocateAligned<double>(static_cast<std::size_t>(4 * system_->vertices));
   system_->load(x, state.get());
-  return parallel_sum(system_->elements->blocks, 64, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    return deformed_volume(*system_->elements, state.get(), begin, end);
-  });
+  return system_->volume(state.get());
 }
 
 double ProjectiveDynamics::rest_volume() const {

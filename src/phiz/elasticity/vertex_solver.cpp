@@ -11,7 +11,7 @@
 
 #include "phiz/core/error.h"
 #include "phiz/core/parallel.h"
-#include "phiz/elasticity/triangular_kernel.h"
+#include "phiz/elasticity/panel_kernel.h"
 
 namespace phiz {
 
@@ -55,13 +55,17 @@ struct LowerTriangle {
   cholmod_sparse sparse;
 };
 
-constexpr std::ptrdiff_t padded(std::ptrdiff_t n) {
-  return (n + 3) / 4 * 4;
-}
-
 /// Subtrees of the elimination tree that are solved side by side; a constant, so that sums do not depend on the
 /// machine.
 constexpr int bins = 4;
+
+using FloatVector = hwy::AlignedFreeUniquePtr<float[]>;
+
+FloatVector float_vector(std::ptrdiff_t size) {
+  FloatVector v = hwy::AllocateAligned<float>(static_cast<std::size_t>(size + 16));
+  std::fill_n(v.get(), size + 16, 0.0F);
+  return v;
+}
 
 }  // namespace
 
@@ -79,56 +83,67 @@ VectorXi elimination_order(const SparseMatrixd& pattern) {
 }
 
 struct VertexSolver::Factor {
+  /// Of the block column [L1; L2] of the factor, the panel Q = [L1^-1; L2 L1^-1] does both passes. Forward: [y; z] = Q x1,
+  /// x1 <- y, x2 <- x2 - z.
+  /// Backward: x1 <- Q^T [x1; -x2].
   struct Supernode {
     int first = 0, columns = 0;
-    int rows = 0;              ///< below the diagonal block
-    int inside = 0;            ///< of these, the first ones, which belong to the same bin
-    std::ptrdiff_t index = 0;  ///< into row_index
-    std::ptrdiff_t below = 0, forward = 0,
-                   backward = 0;  ///< into values: the rectangle, the inverse triangle, its transpose
+    int rows = 0;                                  ///< below the diagonal block
+    int inside = 0;                                ///< of these, the first ones, which belong to the same bin
+    std::ptrdiff_t index = 0;                      ///< into row_index
+    std::ptrdiff_t forward = 0, backward = 0;      ///< into values: Q, Q^T
   };
   std::ptrdiff_t n = 0;
   std::vector<Supernode> supernodes;
   std::vector<int> row_index;  ///< row of x, or of the bin's buffer of top rows
-  hwy::AlignedFreeUniquePtr<double[]> values;
+  FloatVector values;
   std::ptrdiff_t value_count = 0;
+  int tallest = 0;  ///< panel, rows
   std::vector<int> bin_members[bins];  ///< supernodes of each bin, ascending
   std::vector<int> top;                ///< supernodes above all bins, ascending
   std::vector<int> top_rows;
-  hwy::AlignedFreeUniquePtr<double[]> buffers;  ///< bins x top rows x 4
-  std::ptrdiff_t largest = 0;                   ///< columns of the widest supernode, padded
+  FloatVector state;                            ///< four floats per row
+  FloatVector outside[bins];                    ///< top rows x 4
+  FloatVector scratch[bins], gathered[bins];    ///< four floats per row of the tallest panel
 
-  void forward(const Supernode& s, double* x, double* outside, double* scratch) const {
+  void forward(const Supernode& s, int bin, float* x, float* top_part) const {
     const std::ptrdiff_t columns = s.columns;
-    double* mine = x + 4 * static_cast<std::ptrdiff_t>(s.first);
+    float* mine = x + 4 * static_cast<std::ptrdiff_t>(s.first);
     // Contact forces sit on few vertices: what they do not reach stays zero.
-    if (std::all_of(mine, mine + 4 * columns, [](double value) { return value == 0; })) return;
-    dense_multiply(values.get() + s.forward, padded(columns), columns, mine, scratch);
-    std::copy_n(scratch, 4 * columns, mine);
-    const int* index = row_index.data() + s.index;
-    const double* A = values.get() + s.below;
-    if (s.inside > 0) scatter_multiply(A, s.inside, columns, mine, index, x);
-    if (s.rows > s.inside)
-      scatter_multiply(A + s.inside * columns, s.rows - s.inside, columns, mine, index + s.inside, outside);
+    if (std::all_of(mine, mine + 4 * columns, [](float value) { return value == 0; })) return;
+    float* product = scratch[bin].get();
+    panel_multiply(values.get() + s.forward, columns + s.rows, columns, mine, product);
+    std::copy_n(product, 4 * columns, mine);
+    for_rows(s, [&](int r, std::ptrdiff_t at) {
+      float* target = (r < s.inside ? x : top_part) + 4 * at;
+      for (std::ptrdiff_t k = 0; k < 4; ++k) target[k] -= product[4 * (columns + r) + k];
+    });
   }
 
-  void backward(const Supernode& s, double* x, const double* outside, double* scratch) const {
+  void backward(const Supernode& s, int bin, float* x, const float* top_part) const {
     const std::ptrdiff_t columns = s.columns;
-    double* mine = x + 4 * static_cast<std::ptrdiff_t>(s.first);
+    float* mine = x + 4 * static_cast<std::ptrdiff_t>(s.first);
+    float* sources = gathered[bin].get();
+    std::copy_n(mine, 4 * columns, sources);
+    for_rows(s, [&](int r, std::ptrdiff_t at) {
+      const float* source = (r < s.inside ? x : top_part) + 4 * at;
+      for (std::ptrdiff_t k = 0; k < 4; ++k) sources[4 * (columns + r) + k] = -source[k];
+    });
+    panel_multiply(values.get() + s.backward, columns, columns + s.rows, sources, scratch[bin].get());
+    std::copy_n(scratch[bin].get(), 4 * columns, mine);
+  }
+
+  template <class Action>
+  void for_rows(const Supernode& s, Action&& action) const {
     const int* index = row_index.data() + s.index;
-    const double* A = values.get() + s.below;
-    if (s.inside > 0) gather_multiply(A, s.inside, columns, x, index, mine);
-    if (s.rows > s.inside)
-      gather_multiply(A + s.inside * columns, s.rows - s.inside, columns, outside, index + s.inside, mine);
-    dense_multiply(values.get() + s.backward, padded(columns), columns, mine, scratch);
-    std::copy_n(scratch, 4 * columns, mine);
+    for (int r = 0; r < s.rows; ++r) action(r, static_cast<std::ptrdiff_t>(index[r]));
   }
 
   void take(const cholmod_factor& L);
   void divide(const std::vector<int>& parent);
 };
 
-/// Copies CHOLMOD's supernodes into row-major order with inverted diagonal blocks.
+/// Copies CHOLMOD's supernodes into panels.
 void VertexSolver::Factor::take(const cholmod_factor& L) {
   n = static_cast<std::ptrdiff_t>(L.n);
   const auto* super = static_cast<const int*>(L.super);
@@ -137,6 +152,7 @@ void VertexSolver::Factor::take(const cholmod_factor& L) {
   const auto* rows = static_cast<const int*>(L.s);
   const auto* x = static_cast<const double*>(L.x);
   supernodes.resize(L.nsuper);
+  const auto aligned = [](std::ptrdiff_t size) { return (size + 15) / 16 * 16; };
   for (std::size_t k = 0; k < L.nsuper; ++k) {
     Supernode& s = supernodes[k];
     s.first = super[k];
@@ -144,24 +160,25 @@ void VertexSolver::Factor::take(const cholmod_factor& L) {
     s.rows = pi[k + 1] - pi[k] - s.columns;
     s.index = static_cast<std::ptrdiff_t>(row_index.size());
     row_index.insert(row_index.end(), rows + pi[k] + s.columns, rows + pi[k + 1]);
-    const std::ptrdiff_t triangle = padded(s.columns) * s.columns;
     s.forward = value_count;
-    s.backward = value_count + triangle;
-    s.below = value_count + 2 * triangle;
-    value_count += 2 * triangle + static_cast<std::ptrdiff_t>(s.rows) * s.columns;
-    largest = std::max(largest, padded(s.columns));
+    s.backward = s.forward + aligned(panel_size(s.columns + s.rows, s.columns));
+    value_count = s.backward + aligned(panel_size(s.columns, s.columns + s.rows));
+    tallest = std::max(tallest, s.columns + s.rows);
   }
-  values = hwy::AllocateAligned<double>(static_cast<std::size_t>(value_count) + 64);
-  std::fill_n(values.get(), value_count, 0.0);
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  values = float_vector(value_count);
   for (std::size_t k = 0; k < L.nsuper; ++k) {
     const Supernode& s = supernodes[k];
-    const Eigen::Map<const MatrixXd> dense(x + px[k], s.columns + s.rows, s.columns);
-    const MatrixXd inverse =
-        dense.topRows(s.columns).triangularView<Eigen::Lower>().solve(MatrixXd::Identity(s.columns, s.columns));
-    Eigen::Map<RowMajor>(values.get() + s.forward, s.columns, s.columns) = inverse;
-    Eigen::Map<RowMajor>(values.get() + s.backward, s.columns, s.columns) = inverse.transpose();
-    Eigen::Map<RowMajor>(values.get() + s.below, s.rows, s.columns) = dense.bottomRows(s.rows);
+    const std::ptrdiff_t columns = s.columns, height = s.columns + s.rows;
+    const Eigen::Map<const MatrixXd> dense(x + px[k], height, columns);
+    MatrixXd Q(height, columns);
+    Q.topRows(columns) = dense.topRows(columns).triangularView<Eigen::Lower>().solve(MatrixXd::Identity(columns, columns));
+    Q.bottomRows(s.rows) = dense.bottomRows(s.rows) * Q.topRows(columns);
+    for (std::ptrdiff_t j = 0; j < columns; ++j)
+      for (std::ptrdiff_t i = 0; i < height; ++i) {
+        const auto value = static_cast<float>(Q(i, j));
+        values[static_cast<std::size_t>(s.forward + panel_at(height, columns, i, j))] = value;
+        values[static_cast<std::size_t>(s.backward + panel_at(columns, height, j, i))] = value;
+      }
   }
 }
 
@@ -235,7 +252,12 @@ void VertexSolver::Factor::divide(const std::vector<int>& parent) {
         std::find_if(index, index + s.rows, [&](int r) { return top_id[static_cast<std::size_t>(r)] >= 0; }) - index);
     for (int r = s.inside; r < s.rows; ++r) index[r] = top_id[static_cast<std::size_t>(index[r])];
   }
-  buffers = hwy::AllocateAligned<double>(std::max<std::size_t>(1, top_rows.size() * 4 * bins));
+  state = float_vector(4 * n);
+  for (int bin = 0; bin < bins; ++bin) {
+    outside[bin] = float_vector(4 * static_cast<std::ptrdiff_t>(top_rows.size()));
+    scratch[bin] = float_vector(4 * (tallest + panel_group));
+    gathered[bin] = float_vector(4 * (tallest + panel_group));
+  }
 }
 
 VertexSolver::VertexSolver(const SparseMatrixd& A) : factor_(std::make_unique<Factor>()) {
@@ -282,43 +304,38 @@ std::ptrdiff_t VertexSolver::factor_entries() const {
 
 void VertexSolver::solve(double* x) const {
   const Factor& f = *factor_;
-  const std::size_t top_count = f.top_rows.size();
-  const auto scratch_size = static_cast<std::size_t>(4 * f.largest);
-  parallel_chunks(bins, 1, [&](std::ptrdiff_t bin, std::ptrdiff_t) {
-    double* outside = f.buffers.get() + static_cast<std::size_t>(bin) * top_count * 4;
-    std::fill_n(outside, top_count * 4, 0.0);
-    const auto scratch = hwy::AllocateAligned<double>(scratch_size);
-    for (const int k : f.bin_members[bin])
-      f.forward(f.supernodes[static_cast<std::size_t>(k)], x, outside, scratch.get());
+  float* w = f.state.get();
+  const auto supernode = [&f](int k) -> const Factor::Supernode& { return f.supernodes[static_cast<std::size_t>(k)]; };
+  std::transform(x, x + 4 * f.n, w, [](double value) { return static_cast<float>(value); });
+  parallel_chunks(bins, 1, [&](std::ptrdiff_t chunk, std::ptrdiff_t) {
+    const int bin = static_cast<int>(chunk);
+    float* outside = f.outside[bin].get();
+    std::fill_n(outside, 4 * f.top_rows.size(), 0.0F);
+    for (const int k : f.bin_members[bin]) f.forward(supernode(k), bin, w, outside);
   });
-  for (int bin = 0; bin < bins; ++bin) {
-    const double* outside = f.buffers.get() + static_cast<std::size_t>(bin) * top_count * 4;
-    for (std::size_t r = 0; r < top_count; ++r)
-      for (std::size_t k = 0; k < 4; ++k) x[4 * static_cast<std::size_t>(f.top_rows[r]) + k] += outside[4 * r + k];
-  }
-  {
-    const auto scratch = hwy::AllocateAligned<double>(scratch_size);
-    for (const int k : f.top) f.forward(f.supernodes[static_cast<std::size_t>(k)], x, x, scratch.get());
-    for (auto k = f.top.rbegin(); k != f.top.rend(); ++k)
-      f.backward(f.supernodes[static_cast<std::size_t>(*k)], x, x, scratch.get());
-  }
-  double* solved = f.buffers.get();  // the first bin's buffer now holds the solution of the top rows for all bins
-  for (std::size_t r = 0; r < top_count; ++r)
-    std::copy_n(x + 4 * static_cast<std::size_t>(f.top_rows[r]), 4, solved + 4 * r);
-  parallel_chunks(bins, 1, [&](std::ptrdiff_t bin, std::ptrdiff_t) {
-    const auto scratch = hwy::AllocateAligned<double>(scratch_size);
+  for (const FloatVector& outside : f.outside)
+    for (std::size_t r = 0; r < f.top_rows.size(); ++r)
+      for (std::size_t k = 0; k < 4; ++k) w[4 * static_cast<std::size_t>(f.top_rows[r]) + k] += outside[4 * r + k];
+  for (const int k : f.top) f.forward(supernode(k), 0, w, w);
+  for (auto k = f.top.rbegin(); k != f.top.rend(); ++k) f.backward(supernode(*k), 0, w, w);
+  float* solved = f.outside[0].get();  // now holds the solution of the top rows for all bins
+  for (std::size_t r = 0; r < f.top_rows.size(); ++r)
+    std::copy_n(w + 4 * static_cast<std::size_t>(f.top_rows[r]), 4, solved + 4 * r);
+  parallel_chunks(bins, 1, [&](std::ptrdiff_t chunk, std::ptrdiff_t) {
+    const int bin = static_cast<int>(chunk);
     for (auto k = f.bin_members[bin].rbegin(); k != f.bin_members[bin].rend(); ++k)
-      f.backward(f.supernodes[static_cast<std::size_t>(*k)], x, solved, scratch.get());
+      f.backward(supernode(*k), bin, w, solved);
   });
+  std::copy_n(w, 4 * f.n, x);
 }
 
 MatrixXd VertexSolver::inverse_block(const VectorXi& rows) const {
   const Eigen::Index count = rows.size();
   MatrixXd block(count, count);
   const auto x = hwy::AllocateAligned<double>(static_cast<std::size_t>(factor_->n) * 4);
-  for (Eigen::Index first = 0; first < count; first += 4) {
+  for (Eigen::Index first = 0; first < count; first += 3) {
     std::fill_n(x.get(), factor_->n * 4, 0.0);
-    const Eigen::Index batch = std::min<Eigen::Index>(4, count - first);
+    const Eigen::Index batch = std::min<Eigen::Index>(3, count - first);
     for (Eigen::Index k = 0; k < batch; ++k) x[static_cast<std::size_t>(4 * rows[first + k] + k)] = 1;
     solve(x.get());
     for (Eigen::Index i = 0; i < count; ++i)

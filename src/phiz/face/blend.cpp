@@ -17,6 +17,8 @@ namespace phiz {
 namespace {
 
 constexpr double least_weight = 1e-5;
+constexpr std::ptrdiff_t entry_size = blend_values * blend_width;
+static_assert(blend_width == ElementBlocks<float>::width);
 
 Matrix3d symmetric(const Eigen::Matrix<double, 1, 6>& s) {
   Matrix3d S;
@@ -66,7 +68,7 @@ struct TargetBlender::Table {
   std::ptrdiff_t blocks = 0;
   std::vector<std::ptrdiff_t> start;          ///< first entry of each block
   std::vector<int> shape;                     ///< per entry
-  hwy::AlignedFreeUniquePtr<float[]> values;  ///< 80 per entry
+  hwy::AlignedFreeUniquePtr<float[]> values;  ///< blend_values x blend_width per entry
 };
 
 TargetBlender::~TargetBlender() = default;
@@ -77,7 +79,7 @@ TargetBlender::TargetBlender(const FaceModel& model, const VectorXi& soft, const
     : table_(std::make_unique<Table>()) {
   Table& table = *table_;
   table.shapes = static_cast<Eigen::Index>(model.shapes.size());
-  table.blocks = (soft.size() + 7) / 8;
+  table.blocks = (soft.size() + blend_width - 1) / blend_width;
   std::vector<std::ptrdiff_t> slot_of(static_cast<std::size_t>(model.head.volume.T.rows()), -1);
   for (Eigen::Index t = 0; t < soft.size(); ++t)
     slot_of[static_cast<std::size_t>(soft[t])] = slot[static_cast<std::size_t>(t)];
@@ -93,34 +95,34 @@ TargetBlender::TargetBlender(const FaceModel& model, const VectorXi& soft, const
       if (t < 0 || t >= model.head.volume.T.rows())
         reject("volumetric shape " + shape.name, "names a tet that does not exist");
       const std::ptrdiff_t s = slot_of[static_cast<std::size_t>(t)];
-      if (s >= 0) touched[m][static_cast<std::size_t>(s / 8)] = 1;
+      if (s >= 0) touched[m][static_cast<std::size_t>(s / blend_width)] = 1;
     }
     for (std::size_t b = 0; b < touched[m].size(); ++b) table.start[b + 1] += touched[m][b];
   }
   for (std::size_t b = 0; b < static_cast<std::size_t>(table.blocks); ++b) table.start[b + 1] += table.start[b];
   const std::ptrdiff_t entries = table.start.back();
   table.shape.resize(static_cast<std::size_t>(entries));
-  table.values = hwy::AllocateAligned<float>(static_cast<std::size_t>(std::max<std::ptrdiff_t>(entries, 1)) * 80);
-  std::fill_n(table.values.get(), entries * 80, 0.0F);
+  table.values = hwy::AllocateAligned<float>(static_cast<std::size_t>(std::max<std::ptrdiff_t>(entries, 1) * entry_size));
+  std::fill_n(table.values.get(), entries * entry_size, 0.0F);
   std::vector<std::ptrdiff_t> next(table.start.begin(), table.start.end() - 1);
   for (std::size_t m = 0; m < model.shapes.size(); ++m) {
     const VolumetricShape& shape = model.shapes[m];
     for (Eigen::Index i = 0; i < shape.tets.size(); ++i) {
       const std::ptrdiff_t s = slot_of[static_cast<std::size_t>(shape.tets[i])];
       if (s < 0) continue;
-      const std::ptrdiff_t entry = next[static_cast<std::size_t>(s / 8)];
+      const std::ptrdiff_t entry = next[static_cast<std::size_t>(s / blend_width)];
       table.shape[static_cast<std::size_t>(entry)] = static_cast<int>(m);
-      float* values = table.values.get() + entry * 80 + s % 8;
-      for (int k = 0; k < 3; ++k) values[k * 8] = shape.log_rotation(i, k);
-      for (int k = 0; k < 6; ++k) values[(3 + k) * 8] = shape.stretch(i, k);
+      float* values = table.values.get() + entry * entry_size + s % blend_width;
+      for (int k = 0; k < 3; ++k) values[k * blend_width] = shape.log_rotation(i, k);
+      for (int k = 0; k < 6; ++k) values[(3 + k) * blend_width] = shape.stretch(i, k);
       const double det = (Matrix3d::Identity() + symmetric(shape.stretch.row(i).cast<double>())).determinant();
-      values[72] = static_cast<float>(excused_volume(det) / 3);
+      values[9 * blend_width] = static_cast<float>(excused_volume(det) / 3);
     }
     for (std::size_t b = 0; b < touched[m].size(); ++b) next[b] += touched[m][b];
   }
 }
 
-void TargetBlender::blend(const VectorXd& weights, ElementBlocks& elements) const {
+void TargetBlender::blend(const VectorXd& weights, ElementBlocks<float>& elements) const {
   const Table& table = *table_;
   if (weights.size() != table.shapes || !weights.allFinite())
     reject("blend", "needs one finite weight per volumetric shape");
@@ -131,11 +133,12 @@ void TargetBlender::blend(const VectorXd& weights, ElementBlocks& elements) cons
       table.blocks,
       [&](std::ptrdiff_t b) {
         const std::ptrdiff_t first = table.start[static_cast<std::size_t>(b)];
-        blend_block(table.values.get() + first * 80, table.shape.data() + first,
-                    table.start[static_cast<std::size_t>(b) + 1] - first, w.data(), elements.target.get() + b * 72,
-                    elements.stretch.get() + b * 48, elements.goal.get() + b * 8);
+        const std::ptrdiff_t slot = b * blend_width;
+        blend_block(table.values.get() + first * entry_size, table.shape.data() + first,
+                    table.start[static_cast<std::size_t>(b) + 1] - first, w.data(),
+                    elements.target.get() + 9 * slot, elements.stretch.get() + 6 * slot, elements.goal.get() + slot);
       },
-      64);
+      32);
 }
 
 }  // namespace phiz

@@ -30,7 +30,7 @@ Matrix3d rotation_exponential(const Vector3d& v);
 /// insisting on its volume would only make it buckle.
 double excused_volume(double det);
 
-/// All tets at once: the shapes rearranged by blocks of eight tets in the order of an ElementBlocks.
+/// All tets at once: the shapes rearranged by blocks of tets in the order of an ElementBlocks.
 class TargetBlender {
  public:
   /// `soft`: rows of volume.T that are simulated; `slot`: kernel slot of each of them.
@@ -41,7 +41,7 @@ class TargetBlender {
 
   /// Writes the targets of all tets for weights per shape: gradient, stretch, and the volume goal exp(sum w_m
   /// excused_m). Weights below 1e-5 count as none.
-  void blend(const VectorXd& weights, ElementBlocks& elements) const;
+  void blend(const VectorXd& weights, ElementBlocks<float>& elements) const;
 
  private:
   struct Table;

@@ -14,36 +14,28 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-void BlendBlock(const float* entries, const int* shape, std::ptrdiff_t count, const float* weights, double* target,
-                double* stretch, double* goal) {
-  HWY_ALIGN float sum[80];
-  {
-    const hn::CappedTag<float, 8> f;
-    for (std::size_t l = 0; l < 8; l += hn::Lanes(f)) {
-      hn::Vec<decltype(f)> s[10];
-      for (auto& part : s) part = hn::Zero(f);
-      for (std::ptrdiff_t e = 0; e < count; ++e) {
-        const auto w = hn::Set(f, weights[shape[e]]);
-        const float* entry = entries + e * 80 + l;
-        for (int k = 0; k < 10; ++k) s[k] = hn::MulAdd(w, hn::Load(f, entry + k * 8), s[k]);
-      }
-      for (int k = 0; k < 10; ++k) hn::Store(s[k], f, sum + k * 8 + l);
+void BlendBlock(const float* entries, const int* shape, std::ptrdiff_t count, const float* weights, float* target,
+                float* stretch, float* goal) {
+  const hn::CappedTag<float, blend_width> d;
+  constexpr auto width = static_cast<std::size_t>(blend_width);
+  const auto one = hn::Set(d, 1.0F);
+  for (std::size_t l = 0; l < width; l += hn::Lanes(d)) {
+    hn::Vec<decltype(d)> v[blend_values];
+    for (auto& part : v) part = hn::Zero(d);
+    for (std::ptrdiff_t e = 0; e < count; ++e) {
+      if (weights[shape[e]] == 0) continue;
+      const auto w = hn::Set(d, weights[shape[e]]);
+      const float* entry = entries + e * blend_values * blend_width + l;
+      for (std::size_t k = 0; k < blend_values; ++k) v[k] = hn::MulAdd(w, hn::Load(d, entry + k * width), v[k]);
     }
-  }
-  const hn::CappedTag<double, 8> d;
-  const hn::Rebind<float, decltype(d)> half;
-  const auto one = hn::Set(d, 1.0);
-  for (std::size_t l = 0; l < 8; l += hn::Lanes(d)) {
-    hn::Vec<decltype(d)> v[10];
-    for (int k = 0; k < 10; ++k) v[k] = hn::PromoteTo(d, hn::Load(half, sum + k * 8 + l));
     // Quaternion of an eighth of the turn by series, normalised, then squared twice.
-    const auto eighth = hn::Set(d, 0.125);
+    const auto eighth = hn::Set(d, 0.125F);
     const auto qx = hn::Mul(eighth, v[0]), qy = hn::Mul(eighth, v[1]), qz = hn::Mul(eighth, v[2]);
     const auto h2 = hn::MulAdd(qx, qx, hn::MulAdd(qy, qy, hn::Mul(qz, qz)));
-    constexpr double cosine[] = {1, -1.0 / 2, 1.0 / 24, -1.0 / 720, 1.0 / 40320, -1.0 / 3628800, 1.0 / 479001600};
-    constexpr double sine[] = {1, -1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880, -1.0 / 39916800, 1.0 / 6227020800};
-    auto c = hn::Set(d, cosine[6]), s = hn::Set(d, sine[6]);
-    for (int k = 5; k >= 0; --k) {
+    constexpr float cosine[] = {1, -1.0F / 2, 1.0F / 24, -1.0F / 720, 1.0F / 40320, -1.0F / 3628800};
+    constexpr float sine[] = {1, -1.0F / 6, 1.0F / 120, -1.0F / 5040, 1.0F / 362880, -1.0F / 39916800};
+    auto c = hn::Set(d, cosine[5]), s = hn::Set(d, sine[5]);
+    for (int k = 4; k >= 0; --k) {
       c = hn::MulAdd(c, h2, hn::Set(d, cosine[k]));
       s = hn::MulAdd(s, h2, hn::Set(d, sine[k]));
     }
@@ -62,7 +54,7 @@ void BlendBlock(const float* entries, const int* shape, std::ptrdiff_t count, co
       y = hn::Mul(doubled, y);
       z = hn::Mul(doubled, z);
     }
-    const auto two = hn::Set(d, 2.0);
+    const auto two = hn::Set(d, 2.0F);
     const auto xx = hn::Mul(x, x), yy = hn::Mul(y, y), zz = hn::Mul(z, z);
     const auto xy = hn::Mul(x, y), xz = hn::Mul(x, z), yz = hn::Mul(y, z);
     const auto wx = hn::Mul(w, x), wy = hn::Mul(w, y), wz = hn::Mul(w, z);
@@ -80,13 +72,14 @@ void BlendBlock(const float* entries, const int* shape, std::ptrdiff_t count, co
     for (int j = 0; j < 3; ++j)
       for (int i = 0; i < 3; ++i)
         hn::Store(hn::MulAdd(R[6 + i], S[at[2][j]], hn::MulAdd(R[3 + i], S[at[1][j]], hn::Mul(R[i], S[at[0][j]]))), d,
-                  target + (3 * j + i) * 8 + l);
-    for (int k = 0; k < 6; ++k) hn::Store(S[k], d, stretch + k * 8 + l);
+                  target + static_cast<std::size_t>(3 * j + i) * width + l);
+    for (std::size_t k = 0; k < 6; ++k) hn::Store(S[k], d, stretch + k * width + l);
     // exp within the bounds that a goal may have.
-    const auto bound = hn::Set(d, 0.25);
+    const auto bound = hn::Set(d, 0.25F);
     const auto g = hn::Max(hn::Neg(bound), hn::Min(bound, v[9]));
     auto power = one;
-    for (int k = 8; k >= 1; --k) power = hn::MulAdd(hn::Mul(power, g), hn::Set(d, 1.0 / k), one);
+    for (int k = 6; k >= 1; --k)
+      power = hn::MulAdd(hn::Mul(power, g), hn::Set(d, 1.0F / static_cast<float>(k)), one);
     hn::Store(power, d, goal + l);
   }
 }
@@ -100,8 +93,8 @@ namespace phiz {
 
 HWY_EXPORT(BlendBlock);
 
-void blend_block(const float* entries, const int* shape, std::ptrdiff_t count, const float* weights, double* target,
-                 double* stretch, double* goal) {
+void blend_block(const float* entries, const int* shape, std::ptrdiff_t count, const float* weights, float* target,
+                 float* stretch, float* goal) {
   HWY_DYNAMIC_DISPATCH(BlendBlock)(entries, shape, count, weights, target, stretch, goal);
 }
 

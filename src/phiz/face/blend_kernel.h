@@ -6,10 +6,13 @@
 
 namespace phiz {
 
-/// Blends one block of eight tets. `entries`: for each of `count` shapes 9 x 8 floats (rotation vector, then xx, yy,
-/// zz, xy, xz, yz of S - I); `shape`: its number; `weights`: per shape. Writes 9 x 8 doubles of R S (column-major) and
-/// 6 x 8 of S.
-void blend_block(const float* entries, const int* shape, std::ptrdiff_t count, const float* weights, double* target,
-                 double* stretch, double* goal);
+constexpr std::ptrdiff_t blend_width = 16;    ///< tets per block
+constexpr std::ptrdiff_t blend_values = 10;   ///< per tet and shape: rotation vector, S - I (xx, yy, zz, xy, xz, yz), and
+                                              ///< a third of the logarithm of the volume that is excused
+
+/// Blends one block of tets. `entries`: blend_values x blend_width for each of `count` shapes; `shape`: its number;
+/// `weights`: per shape. Writes R S (9 x blend_width, column-major), S (6 x blend_width) and the volume goal.
+void blend_block(const float* entries, const int* shape, std::ptrdiff_t count, const float* weights, float* target,
+                 float* stretch, float* goal);
 
 }  // namespace phiz

@@ -98,6 +98,7 @@ struct Simulation::Parts {
 
   ElasticBody body() const {
     ElasticBody b = flesh_body(model->head, soft, options.weights, options.stiffness);
+    b.precision = Precision::single;
     if (options.dynamic) {
       b.time_step = options.time_step;
       b.mass = lumped_tet_mass(b.rest, b.tets, options.density);

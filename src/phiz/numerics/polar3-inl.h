@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Lane kernels on 3x3 matrices: nine vectors, one matrix per lane, columns one after the other. For inclusion in
-/// sources that are compiled once per vector unit through <hwy/foreach_target.h>.
+/// Lane kernels on 3x3 matrices of doubles or floats: nine vectors, one matrix per lane, columns one after the other.
+/// For inclusion in sources that are compiled once per vector unit through <hwy/foreach_target.h>.
 #if defined(PHIZ_NUMERICS_POLAR3_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PHIZ_NUMERICS_POLAR3_INL_H_
 #undef PHIZ_NUMERICS_POLAR3_INL_H_
@@ -63,19 +63,20 @@ HWY_INLINE void TransposeMultiply3(const V* A, const V* B, V* C) {
 template <class D, class V = hwy::HWY_NAMESPACE::Vec<D>, class Project>
 HWY_NOINLINE void RepairLanes(D d, hwy::HWY_NAMESPACE::Mask<D> marked, const V* A, V* P, const Project& project) {
   namespace hn = hwy::HWY_NAMESPACE;
-  constexpr std::size_t most = 8;
-  HWY_ALIGN double a[9 * most], p[9 * most], mark[most];
+  using T = hn::TFromD<D>;
+  constexpr std::size_t most = 64 / sizeof(T);
+  HWY_ALIGN T a[9 * most], p[9 * most], mark[most];
   for (int k = 0; k < 9; ++k) {
     hn::Store(A[k], d, a + k * most);
     hn::Store(P[k], d, p + k * most);
   }
-  hn::Store(hn::IfThenElseZero(marked, hn::Set(d, 1.0)), d, mark);
+  hn::Store(hn::IfThenElseZero(marked, hn::Set(d, T(1))), d, mark);
   for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
     if (mark[lane] == 0) continue;
     Matrix3d M;
     for (std::size_t k = 0; k < 9; ++k) M.data()[k] = a[k * most + lane];
     const Matrix3d result = M.allFinite() ? Matrix3d(project(M)) : Matrix3d(Matrix3d::Identity());
-    for (std::size_t k = 0; k < 9; ++k) p[k * most + lane] = result.data()[k];
+    for (std::size_t k = 0; k < 9; ++k) p[k * most + lane] = static_cast<T>(result.data()[k]);
   }
   for (int k = 0; k < 9; ++k) P[k] = hn::Load(d, p + k * most);
 }
@@ -84,10 +85,11 @@ HWY_NOINLINE void RepairLanes(D d, hwy::HWY_NAMESPACE::Mask<D> marked, const V* 
 template <class D, class V = hwy::HWY_NAMESPACE::Vec<D>>
 HWY_INLINE void PolishRotation3(D d, const V* B, V* R) {
   namespace hn = hwy::HWY_NAMESPACE;
+  using T = hn::TFromD<D>;
   V S[9];
   TransposeMultiply3(R, B, S);
   // With S = R^T B: (tr S I - sym S) w = axial vector of S - S^T, then R <- R exp[w].
-  const V half = hn::Set(d, 0.5);
+  const V half = hn::Set(d, T(0.5));
   const V h01 = hn::Mul(half, hn::Add(S[1], S[3])), h02 = hn::Mul(half, hn::Add(S[2], S[6])),
           h12 = hn::Mul(half, hn::Add(S[5], S[7]));
   const V M[9] = {hn::Add(S[4], S[8]), hn::Neg(h01), hn::Neg(h02), hn::Neg(h01),       hn::Add(S[0], S[8]),
@@ -99,7 +101,7 @@ HWY_INLINE void PolishRotation3(D d, const V* B, V* R) {
   V w[3];
   for (int k = 0; k < 3; ++k) w[k] = hn::Div(Dot3(C + 3 * k, axial), det);
   // I + [w] + [w]^2 / 2 = (1 - w.w / 2) I + [w] + w w^T / 2
-  const V diagonal = hn::NegMulAdd(half, Dot3(w, w), hn::Set(d, 1.0));
+  const V diagonal = hn::NegMulAdd(half, Dot3(w, w), hn::Set(d, T(1)));
   V E[9];
   for (int c = 0; c < 3; ++c)
     for (int r = 0; r < 3; ++r) {
@@ -112,14 +114,14 @@ HWY_INLINE void PolishRotation3(D d, const V* B, V* R) {
   E[5] = hn::Add(E[5], w[0]);
   E[6] = hn::Add(E[6], w[1]);
   E[7] = hn::Sub(E[7], w[0]);
-  V T[9];
-  Multiply3(R, E, T);
-  // Newton and Schulz: R <- T (3 I - T^T T) / 2.
+  V Q[9];
+  Multiply3(R, E, Q);
+  // Newton and Schulz: R <- Q (3 I - Q^T Q) / 2.
   V G[9];
-  TransposeMultiply3(T, T, G);
-  for (int k = 0; k < 9; ++k) G[k] = hn::Mul(hn::Set(d, -0.5), G[k]);
-  for (int k = 0; k < 9; k += 4) G[k] = hn::Add(G[k], hn::Set(d, 1.5));
-  Multiply3(T, G, R);
+  TransposeMultiply3(Q, Q, G);
+  for (int k = 0; k < 9; ++k) G[k] = hn::Mul(hn::Set(d, T(-0.5)), G[k]);
+  for (int k = 0; k < 9; k += 4) G[k] = hn::Add(G[k], hn::Set(d, T(1.5)));
+  Multiply3(Q, G, R);
 }
 
 /// R = closest rotation to A (det R = 1, A may be inverted). Davenport's 4x4 eigenvalue by Newton's iteration on its
@@ -127,42 +129,45 @@ HWY_INLINE void PolishRotation3(D d, const V* B, V* R) {
 template <class D, class V = hwy::HWY_NAMESPACE::Vec<D>>
 HWY_INLINE void ClosestRotation3(D d, const V* A, V* R) {
   namespace hn = hwy::HWY_NAMESPACE;
-  const V one = hn::Set(d, 1.0);
+  using T = hn::TFromD<D>;
+  constexpr bool full = sizeof(T) == sizeof(double);
+  constexpr T tiny = static_cast<T>(full ? 1e-200 : 1e-25), huge = 1 / tiny;
+  const V one = hn::Set(d, T(1));
   const V norm2 = Dot9(A, A);
-  auto bad = hn::Not(hn::And(hn::Gt(norm2, hn::Set(d, 1e-200)), hn::Lt(norm2, hn::Set(d, 1e200))));
+  auto bad = hn::Not(hn::And(hn::Gt(norm2, hn::Set(d, tiny)), hn::Lt(norm2, hn::Set(d, huge))));
   const V scale = hn::Div(one, hn::Sqrt(hn::IfThenElse(bad, one, norm2)));
   V B[9], C[9];
   for (int k = 0; k < 9; ++k) B[k] = hn::Mul(A[k], scale);
   Cofactor3(d, B, C);
   const V det = Dot3(B, C);
   // The largest root of x^4 - 2 x^2 - 8 det x + 1 - 4 |C|^2 is s0 + s1 + s2; it is approached from above, |B| = 1.
-  const V linear = hn::Mul(hn::Set(d, -8.0), det);
-  const V constant = hn::NegMulAdd(hn::Set(d, 4.0), Dot9(C, C), one);
-  V x = hn::Set(d, 1.7320508075688774);
+  const V linear = hn::Mul(hn::Set(d, T(-8.0)), det);
+  const V constant = hn::NegMulAdd(hn::Set(d, T(4.0)), Dot9(C, C), one);
+  V x = hn::Set(d, T(1.7320508075688774));
   bool done = false;
   for (int i = 0; i < 12 && !done; ++i) {
     const V x2 = hn::Mul(x, x);
-    const V value = hn::MulAdd(x, hn::MulAdd(x, hn::Sub(x2, hn::Set(d, 2.0)), linear), constant);
-    const V slope = hn::MulAdd(hn::Set(d, 4.0), hn::Mul(x, hn::Sub(x2, one)), linear);
+    const V value = hn::MulAdd(x, hn::MulAdd(x, hn::Sub(x2, hn::Set(d, T(2.0))), linear), constant);
+    const V slope = hn::MulAdd(hn::Set(d, T(4.0)), hn::Mul(x, hn::Sub(x2, one)), linear);
     const V step = hn::Div(value, slope);
-    const auto live = hn::Gt(slope, hn::Set(d, 1e-3));
+    const auto live = hn::Gt(slope, hn::Set(d, T(1e-3)));
     bad = hn::Or(bad, hn::Not(live));
     x = hn::Sub(x, hn::IfThenElseZero(live, step));
     // The error after a step is of the order of the square of its length.
-    const auto settled = hn::Or(bad, hn::Lt(hn::Abs(step), hn::Set(d, 1e-9)));
+    const auto settled = hn::Or(bad, hn::Lt(hn::Abs(step), hn::Set(d, T(full ? 1e-9 : 2e-4))));
     done = hn::AllTrue(d, settled);
     if (i == 11) bad = hn::Or(bad, hn::Not(settled));
   }
-  const V kappa = hn::Mul(hn::Set(d, 0.5), hn::MulSub(x, x, one));
+  const V kappa = hn::Mul(hn::Set(d, T(0.5)), hn::MulSub(x, x, one));
   const V zeta = hn::MulSub(kappa, x, det);  // (s0 + s1) (s1 + s2) (s2 + s0)
-  bad = hn::Or(bad, hn::Not(hn::Gt(zeta, hn::Set(d, 1e-2))));
+  bad = hn::Or(bad, hn::Not(hn::Gt(zeta, hn::Set(d, T(1e-2)))));
   const V inverse = hn::Div(one, hn::IfThenElse(bad, one, zeta));
   V M[9], BM[9];
   TransposeMultiply3(B, B, M);
   Multiply3(B, M, BM);
   const V along = hn::Mul(inverse, hn::Add(kappa, one)), across = hn::Mul(inverse, x);
   for (int k = 0; k < 9; ++k) R[k] = hn::MulAdd(along, B[k], hn::MulSub(across, C[k], hn::Mul(inverse, BM[k])));
-  if (!hn::AllTrue(d, hn::Or(bad, hn::Gt(zeta, hn::Set(d, 0.5))))) PolishRotation3(d, B, R);
+  if (!hn::AllTrue(d, hn::Or(bad, hn::Gt(zeta, hn::Set(d, T(0.5)))))) PolishRotation3(d, B, R);
   if (!hn::AllFalse(d, bad)) RepairLanes(d, bad, A, R, [](const Matrix3d& F) { return closest_rotation(F); });
 }
 
@@ -172,7 +177,8 @@ HWY_INLINE void ClosestRotation3(D d, const V* A, V* R) {
 template <class D, class V = hwy::HWY_NAMESPACE::Vec<D>>
 HWY_INLINE void ClosestUnimodular3(D d, const V* A, V* P, double least_change2 = 1e-26) {
   namespace hn = hwy::HWY_NAMESPACE;
-  const V one = hn::Set(d, 1.0);
+  using T = hn::TFromD<D>;
+  const V one = hn::Set(d, T(1));
   V C[9], E[9];
   for (int k = 0; k < 9; ++k) {
     P[k] = A[k];
@@ -183,7 +189,7 @@ HWY_INLINE void ClosestUnimodular3(D d, const V* A, V* P, double least_change2 =
   for (int i = 0; i < 24 && !done; ++i) {
     Cofactor3(d, P, C);
     const V det = Dot3(P, C);
-    if (i == 0) bad = hn::Not(hn::And(hn::Gt(det, hn::Set(d, 0.3)), hn::Lt(det, hn::Set(d, 2.0))));
+    if (i == 0) bad = hn::Not(hn::And(hn::Gt(det, hn::Set(d, T(0.3))), hn::Lt(det, hn::Set(d, T(2)))));
     const V along = hn::Div(hn::Sub(Dot9(C, E), hn::Sub(det, one)), hn::IfThenElse(bad, one, Dot9(C, C)));
     V change = hn::Zero(d);
     for (int k = 0; k < 9; ++k) {
@@ -193,7 +199,7 @@ HWY_INLINE void ClosestUnimodular3(D d, const V* A, V* P, double least_change2 =
       E[k] = next;
       P[k] = hn::Add(A[k], next);
     }
-    const auto settled = hn::Or(bad, hn::Lt(change, hn::Set(d, least_change2)));
+    const auto settled = hn::Or(bad, hn::Lt(change, hn::Set(d, static_cast<T>(least_change2))));
     done = hn::AllTrue(d, settled);
     if (i == 23) bad = hn::Or(bad, hn::Not(settled));
   }
