@@ -62,18 +62,16 @@ nlohmann::json as_json(int number, double time, const SolveStatistics& statistic
           {"ms", statistics.milliseconds}};
 }
 
-/// Goes on with the take at `path`; `finished` gets its frames, of which all but the last are stripped of positions.
+/// Goes on with the take at `path`; `finished` gets its frames, without positions where they are not needed to go on.
 TakeWriter resume_take(const std::string& path, const Take& head, std::vector<TakeFrame>& finished) {
   TakeWriter writer = TakeWriter::resume(path, head);
   if (writer.frames() == 0) return writer;
   writer.finish();  // what a killed program left has no checksum yet
   const TakeReader reader(path);
   for (int f = 0; f < reader.frames(); ++f) {
-    if (!finished.empty()) {
-      finished.back().skin.resize(0, 3);
-      finished.back().volume.resize(0, 3);
-    }
     finished.push_back(reader.frame(f));
+    finished.back().skin.resize(0, 3);
+    if (f + 1 != last_key_frame(reader.frames())) finished.back().volume.resize(0, 3);
   }
   return TakeWriter::resume(path, head);
 }

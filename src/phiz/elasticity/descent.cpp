@@ -15,6 +15,10 @@ namespace {
 /// Rows whose gap would stay above this after the unconstrained step are left out of the multiplier problem, metres.
 constexpr double idle_gap = 2e-4;
 
+/// The rows of contact serve until a vertex may have moved this far, metres: near a solution their planes move less than
+/// that, and the set of rows must not change without end.
+constexpr double detection_lag = 4e-5;
+
 /// Iterations before steps are relaxed.
 constexpr int settle = 5;
 
@@ -24,19 +28,41 @@ constexpr double plain_shortfall = 10;
 /// The factor bounds the curvature from above: where the first step need not be the plain one, it is longer by this.
 constexpr double first_stretch = 1.6;
 
-double longest_move(const double* p, std::ptrdiff_t rows) {
-  double longest2 = 0;
-  for (std::ptrdiff_t r = 0; r < rows; ++r)
-    longest2 = std::max(longest2, Eigen::Map<const Eigen::Vector3d>(p + 4 * r).squaredNorm());
-  return std::sqrt(longest2);
+/// The system's memory, or a new one if there is none of that length.
+LowRankInverse& memory_of(ElasticSystem& system, int history) {
+  if (!system.memory || system.memory->history() != std::max(1, history))
+    system.memory.emplace(system.size(), history, history > 0 ? first_stretch : 1);
+  return *system.memory;
 }
 
-/// sum_k coefficient_k v_k . normal.
-double row_product(const ContactRow& row, const double* v) {
+double longest_move(const float* p, std::ptrdiff_t rows) {
+  float longest2 = 0;
+  for (std::ptrdiff_t r = 0; r < rows; ++r)
+    longest2 = std::max(longest2, Eigen::Map<const Eigen::Vector4f>(p + 4 * r).squaredNorm());
+  return std::sqrt(static_cast<double>(longest2));
+}
+
+Vector3d vector_at(const float* v, int row) {
+  return Eigen::Map<const Eigen::Vector3f>(v + 4 * static_cast<std::ptrdiff_t>(row)).cast<double>();
+}
+
+/// sum_k coefficient_k v(vertex_k) . normal.
+template <class Vectors>
+double row_product(const ContactRow& row, const Vectors& v) {
   Vector3d sum = Vector3d::Zero();
-  for (int k = 0; k < row.count; ++k)
-    sum += row.coefficients[k] * Eigen::Map<const Vector3d>(v + 4 * static_cast<std::ptrdiff_t>(row.vertices[k]));
+  for (int k = 0; k < row.count; ++k) sum += row.coefficients[k] * v(row.vertices[k]);
   return sum.dot(row.normal);
+}
+
+/// v <- v + scale C^T lambda.
+void add_contact_forces(const std::vector<ContactRow>& rows, const Eigen::VectorXd& lambda, double scale, float* v) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double force = scale * lambda[static_cast<Eigen::Index>(i)];
+    if (force == 0) continue;
+    for (int k = 0; k < rows[i].count; ++k)
+      Eigen::Map<Eigen::Vector3f>(v + 4 * static_cast<std::ptrdiff_t>(rows[i].vertices[k])) +=
+          (force * rows[i].coefficients[k] * rows[i].normal).cast<float>();
+  }
 }
 
 double deepest(const ContactRows& contact) {
@@ -52,9 +78,8 @@ Descent::Descent(ElasticSystem& system, const SolveOptions& options, ContactScen
     : system_(system),
       options_(options),
       contacts_(contacts),
-      inverse_(system.size(), std::max(1, options.history), options.history > 0 ? first_stretch : 1),
-      contact_force_(hwy::AllocateAligned<double>(static_cast<std::size_t>(system.size()))),
-      inverse_force_(hwy::AllocateAligned<double>(static_cast<std::size_t>(system.size()))) {}
+      inverse_(memory_of(system, options.history)),
+      force_(float_vector(system.size())) {}
 
 ContactRows Descent::detect(const double* x) {
   ContactRows out;
@@ -78,50 +103,75 @@ ContactRows Descent::detect(const double* x) {
   return out;
 }
 
-void Descent::find_step(const ContactRows& contact, const double* gradient, const double* inverse_gradient, double* p) {
-  const std::ptrdiff_t size = system_.size();
-  const Eigen::VectorXd u = inverse_.project(gradient);
-  inverse_.combine(inverse_gradient, inverse_.middle(u), -1, p);
+bool Descent::was_active(std::int64_t key) const {
+  return std::binary_search(active_keys_.begin(), active_keys_.end(), key);
+}
+
+void Descent::find_step(const ContactRows& contact, const float* inverse_gradient, float* p) {
   const auto row_count = static_cast<Eigen::Index>(contact.rows.size());
+  const Eigen::VectorXd u = inverse_.projection(), free_middle = inverse_.middle(u);
+  // Where the vertices in contact would go without it.
+  const auto free_motion = [&](int row) -> Vector3d {
+    return -inverse_.gamma() * vector_at(inverse_gradient, row) -
+           inverse_.rows(4 * static_cast<std::ptrdiff_t>(row), 3) * free_middle;
+  };
   lambda_ = Eigen::VectorXd::Zero(row_count);
   row_motion_.resize(row_count);
   std::vector<Eigen::Index> working;
   for (Eigen::Index i = 0; i < row_count; ++i) {
     const auto s = static_cast<std::size_t>(i);
-    row_motion_[i] = row_product(contact.rows[s], p);
-    if (contact.rows[s].gap + row_motion_[i] < idle_gap ||
-        std::binary_search(active_keys_.begin(), active_keys_.end(), contact.key[s]))
-      working.push_back(i);
+    row_motion_[i] = row_product(contact.rows[s], free_motion);
+    if (contact.rows[s].gap + row_motion_[i] < idle_gap || was_active(contact.key[s])) working.push_back(i);
   }
-  if (working.empty()) {
-    active_keys_.clear();
-    return;
-  }
-
-  // (C H C^T) lambda + (gap - C H g) >= 0 (eq. 5.10, with unilateral multipliers).
-  const auto m = static_cast<Eigen::Index>(working.size());
-  Eigen::MatrixXd U(m, 2 * inverse_.pairs());
-  Eigen::VectorXd q(m);
-  std::vector<char> active(working.size(), 0);
-  for (Eigen::Index i = 0; i < m; ++i) {
-    const auto s = static_cast<std::size_t>(working[static_cast<std::size_t>(i)]);
-    const ContactRow& row = contact.rows[s];
-    q[i] = row.gap + row_motion_[static_cast<Eigen::Index>(s)];
-    active[static_cast<std::size_t>(i)] =
-        std::binary_search(active_keys_.begin(), active_keys_.end(), contact.key[s]) || q[i] < 0;
-    U.row(i).setZero();
+  Eigen::MatrixXd U = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(working.size()), 2 * inverse_.pairs());
+  for (Eigen::Index i = 0; i < U.rows(); ++i) {
+    const ContactRow& row = contact.rows[static_cast<std::size_t>(working[static_cast<std::size_t>(i)])];
     for (int k = 0; k < row.count; ++k)
       U.row(i) += row.coefficients[k] * row.normal.transpose() *
                   inverse_.rows(4 * static_cast<std::ptrdiff_t>(row.vertices[k]), 3);
+  }
+  find_multipliers(contact, working, U);
+  active_keys_.clear();
+  for (Eigen::Index i = 0; i < row_count; ++i)
+    if (lambda_[i] > 0) active_keys_.push_back(contact.key[static_cast<std::size_t>(i)]);
+  if (active_keys_.empty()) {
+    inverse_.apply(inverse_gradient, free_middle, -1, p);
+    return;
+  }
+  std::sort(active_keys_.begin(), active_keys_.end());
+  std::fill_n(force_.get(), system_.size(), 0.0F);
+  add_contact_forces(contact.rows, lambda_, 1, force_.get());
+  system_.solver->solve(force_.get());
+  combine({inverse_gradient, force_.get()}, Eigen::Vector2f(1, -1), force_.get(), system_.size());
+  inverse_.apply(force_.get(), inverse_.middle(u - U.transpose() * lambda_(working)), -1, p);
+  for (Eigen::Index i = 0; i < row_count; ++i)
+    row_motion_[i] =
+        row_product(contact.rows[static_cast<std::size_t>(i)], [p](int row) { return vector_at(p, row); });
+}
+
+void Descent::find_multipliers(const ContactRows& contact, const std::vector<Eigen::Index>& working,
+                               const Eigen::MatrixXd& U) {
+  // (C H C^T) lambda + (gap - C H g) >= 0 (eq. 5.10, with unilateral multipliers).
+  const auto m = static_cast<Eigen::Index>(working.size());
+  if (m == 0) return;
+  const auto row_of = [&](Eigen::Index i) -> const ContactRow& {
+    return contact.rows[static_cast<std::size_t>(working[static_cast<std::size_t>(i)])];
+  };
+  Eigen::VectorXd q(m);
+  std::vector<char> active(working.size(), 0);
+  for (Eigen::Index i = 0; i < m; ++i) {
+    const auto s = static_cast<std::size_t>(i);
+    q[i] = row_of(i).gap + row_motion_[working[s]];
+    active[s] = was_active(contact.key[static_cast<std::size_t>(working[s])]) || q[i] < 0;
   }
   Eigen::MatrixXd M = U * (inverse_.middle() * U.transpose());
   M = 0.5 * (M + M.transpose()).eval();
   parallel_for(
       m,
       [&](std::ptrdiff_t i) {
-        const ContactRow& a = contact.rows[static_cast<std::size_t>(working[static_cast<std::size_t>(i)])];
+        const ContactRow& a = row_of(i);
         for (Eigen::Index j = 0; j <= i; ++j) {
-          const ContactRow& b = contact.rows[static_cast<std::size_t>(working[static_cast<std::size_t>(j)])];
+          const ContactRow& b = row_of(j);
           double sum = 0;
           for (int k = 0; k < b.count; ++k) {
             const auto column = system_.compliance.col(system_.compliance_row[b.vertices[k]]);
@@ -136,63 +186,35 @@ void Descent::find_step(const ContactRows& contact, const double* gradient, cons
   M.triangularView<Eigen::StrictlyUpper>() = M.transpose();
   M.diagonal().array() += 1e-10 * M.trace() / static_cast<double>(m);
   const Eigen::VectorXd multipliers = solve_complementarity(M, q, active);
-  active_keys_.clear();
-  if (multipliers.size() == 0 || multipliers.isZero(0)) return;
-
-  std::fill_n(contact_force_.get(), size, 0.0);
-  for (Eigen::Index i = 0; i < m; ++i) {
-    if (multipliers[i] <= 0) continue;
-    const auto s = static_cast<std::size_t>(working[static_cast<std::size_t>(i)]);
-    const ContactRow& row = contact.rows[s];
-    lambda_[static_cast<Eigen::Index>(s)] = multipliers[i];
-    active_keys_.push_back(contact.key[s]);
-    for (int k = 0; k < row.count; ++k)
-      Eigen::Map<Vector3d>(contact_force_.get() + 4 * static_cast<std::ptrdiff_t>(row.vertices[k])) +=
-          multipliers[i] * row.coefficients[k] * row.normal;
-  }
-  std::sort(active_keys_.begin(), active_keys_.end());
-  std::copy_n(contact_force_.get(), size, inverse_force_.get());
-  system_.solver->solve(inverse_force_.get());
-  for (std::ptrdiff_t i = 0; i < size; ++i)
-    inverse_force_[static_cast<std::size_t>(i)] = inverse_gradient[i] - inverse_force_[static_cast<std::size_t>(i)];
-  inverse_.combine(inverse_force_.get(), inverse_.middle(u - U.transpose() * multipliers), -1, p);
-  for (Eigen::Index i = 0; i < row_count; ++i)
-    row_motion_[i] = row_product(contact.rows[static_cast<std::size_t>(i)], p);
+  if (multipliers.size() == m) lambda_(working) = multipliers;
 }
 
-double Descent::contact_residual(const ContactRows& contact, const double* gradient) {
-  std::copy_n(gradient, system_.size(), inverse_force_.get());
-  for (std::size_t i = 0; i < contact.rows.size(); ++i) {
-    const double lambda = lambda_[static_cast<Eigen::Index>(i)];
-    if (lambda == 0) continue;
-    const ContactRow& row = contact.rows[i];
-    for (int k = 0; k < row.count; ++k)
-      Eigen::Map<Vector3d>(inverse_force_.get() + 4 * static_cast<std::ptrdiff_t>(row.vertices[k])) -=
-          lambda * row.coefficients[k] * row.normal;
-  }
-  return std::sqrt(dot(inverse_force_.get(), inverse_force_.get(), system_.size()));
+double Descent::residual(const ContactRows& contact, const float* gradient) {
+  std::copy_n(gradient, system_.size(), force_.get());
+  add_contact_forces(contact.rows, lambda_, -1, force_.get());
+  return std::sqrt(dot(force_.get(), force_.get(), system_.size())) / system_.force_scale();
 }
 
 SolveStatistics Descent::run(double* x) {
   const std::ptrdiff_t size = system_.size();
-  const auto allocate = [size] { return hwy::AllocateAligned<double>(static_cast<std::size_t>(size)); };
-  AlignedVector g = allocate(), next_g = allocate(), v = allocate(), next_v = allocate(), p = allocate();
+  FloatVector g = float_vector(size), next_g = float_vector(size), v = float_vector(size), next_v = float_vector(size);
+  FloatVector p = float_vector(size), last_p = float_vector(size);
   AlignedVector trial = hwy::AllocateAligned<double>(static_cast<std::size_t>(4 * system_.vertices));
-  std::copy_n(x, 4 * system_.vertices, trial.get());
-  AlignedVector last_p = allocate();
-  std::fill_n(last_p.get(), size, 0.0);
   AlignedVector apart = hwy::AllocateAligned<double>(static_cast<std::size_t>(4 * system_.vertices));
+  std::copy_n(x, 4 * system_.vertices, trial.get());
   bool has_apart = false;  // the last state without penetration
   double last_length2 = 0, relaxation = 1;
+  double moved = 0;  // since the contact rows were found, metres
   SolveStatistics statistics;
   double energy = system_.evaluate(x, g.get(), system_.free);
   std::copy_n(g.get(), size, v.get());
   system_.solver->solve(v.get());
+  inverse_.start(g.get());
   ContactRows contact = detect(x);
 
   while (statistics.iterations < options_.max_iterations) {
     ++statistics.iterations;
-    find_step(contact, g.get(), v.get(), p.get());
+    find_step(contact, v.get(), p.get());
     const bool plain = options_.history > 0 && inverse_.pairs() == 0;
     const double contact_work = lambda_.dot(row_motion_);
     const Eigen::VectorXd products = dots({g.get(), last_p.get(), p.get()}, p.get(), size);
@@ -217,7 +239,7 @@ SolveStatistics Descent::run(double* x) {
     bool accepted = false;
     for (int halving = 0; halving < 12 && std::isfinite(reach); ++halving) {
       for (std::ptrdiff_t i = 0; i < size; ++i)
-        trial[static_cast<std::size_t>(i)] = x[i] + alpha * p[static_cast<std::size_t>(i)];
+        trial[static_cast<std::size_t>(i)] = x[i] + alpha * static_cast<double>(p[static_cast<std::size_t>(i)]);
       next_energy = system_.evaluate(trial.get(), next_g.get(), system_.free);
       if (next_energy - alpha * contact_work <= energy - 1e-4 * alpha * decrease + rounding) {
         accepted = true;
@@ -228,7 +250,7 @@ SolveStatistics Descent::run(double* x) {
     }
     if (!accepted) {
       if (inverse_.pairs() == 0) {
-        statistics.residual = contact_residual(contact, g.get()) / system_.force_scale();
+        statistics.residual = residual(contact, g.get());
         break;
       }
       inverse_.clear();  // fall back to a plain step from the same place
@@ -238,21 +260,26 @@ SolveStatistics Descent::run(double* x) {
     energy = next_energy;
     statistics.last_step = reach * std::min(1.0, alpha / relaxation);
     statistics.contacts = static_cast<int>((lambda_.array() > 0).count());
-    const double force = contact_residual(contact, next_g.get());
-    contact = detect(x);
-    statistics.penetration = deepest(contact);
     // A plain step is short of the way to go by up to the ratio of the softest to the stiffest response.
     const bool small_step = (plain ? plain_shortfall : 1.0) * statistics.last_step <= options_.step_tolerance;
     const bool last = statistics.iterations == options_.max_iterations;
-    if (small_step || last) statistics.residual = force / system_.force_scale();
+    const bool stalled = relaxation < 0.5 && alpha * reach <= options_.step_tolerance;
+    if (small_step || last || stalled) statistics.residual = residual(contact, next_g.get());
+    moved += alpha * reach;
+    if (small_step || last || stalled || moved > detection_lag) {
+      contact = detect(x);
+      moved = 0;
+    } else {
+      for (std::size_t i = 0; i < contact.rows.size(); ++i)
+        contact.rows[i].gap += alpha * row_motion_[static_cast<Eigen::Index>(i)];
+    }
+    statistics.penetration = deepest(contact);
     statistics.converged = small_step && statistics.residual <= options_.residual_tolerance &&
                            statistics.penetration <= options_.penetration_tolerance;
     if (statistics.iterations > settle && statistics.penetration <= options_.penetration_tolerance) {
       std::copy_n(x, 4 * system_.vertices, apart.get());
       has_apart = true;
     }
-    const bool stalled = relaxation < 0.5 && alpha * reach <= options_.step_tolerance;
-    if (stalled) statistics.residual = force / system_.force_scale();
     if (last || stalled || (statistics.converged && statistics.iterations >= options_.min_iterations)) break;
 
     std::copy_n(next_g.get(), size, next_v.get());
@@ -260,11 +287,11 @@ SolveStatistics Descent::run(double* x) {
     if (options_.history > 0) {
       for (std::ptrdiff_t i = 0; i < size; ++i) {
         const auto s = static_cast<std::size_t>(i);
-        p[s] *= alpha;
+        p[s] *= static_cast<float>(alpha);
         g[s] = next_g[s] - g[s];
         v[s] = next_v[s] - v[s];
       }
-      inverse_.add(p.get(), g.get(), v.get());
+      inverse_.add(p.get(), g.get(), v.get(), next_g.get());
     }
     std::swap(g, next_g);
     std::swap(v, next_v);

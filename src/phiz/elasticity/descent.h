@@ -27,18 +27,22 @@ class Descent {
 
  private:
   ContactRows detect(const double* x);
-  /// Step p from the gradient and its image under A^-1; fills lambda_ and row_motion_.
-  void find_step(const ContactRows& contact, const double* gradient, const double* inverse_gradient, double* p);
-  double contact_residual(const ContactRows& contact, const double* gradient);
+  /// Step p from the image of the gradient under A^-1; fills lambda_ and row_motion_.
+  void find_step(const ContactRows& contact, const float* inverse_gradient, float* p);
+  /// Fills lambda_ for the rows `working`. U: their products with the quasi-Newton pairs.
+  void find_multipliers(const ContactRows& contact, const std::vector<Eigen::Index>& working, const Eigen::MatrixXd& U);
+  bool was_active(std::int64_t key) const;
+  /// Relative norm of the forces at the state that was evaluated last, whose gradient is given.
+  double residual(const ContactRows& contact, const float* gradient);
 
   ElasticSystem& system_;
   const SolveOptions& options_;
   ContactScene* contacts_;
-  LowRankInverse inverse_;
+  LowRankInverse& inverse_;
   Eigen::VectorXd lambda_;      ///< multiplier per row of the last find_step, newtons
   Eigen::VectorXd row_motion_;  ///< C p of the last find_step, metres
   std::vector<std::int64_t> active_keys_;
-  AlignedVector contact_force_, inverse_force_;
+  FloatVector force_;
 };
 
 }  // namespace phiz

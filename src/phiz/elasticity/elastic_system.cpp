@@ -226,51 +226,55 @@ double ElasticSystem::volume(const double* x) const {
       elements);
 }
 
-double ElasticSystem::evaluate(const double* x, double* gradient, std::ptrdiff_t rows) {
+template <class Out>
+double ElasticSystem::evaluate(const double* x, Out* gradient, std::ptrdiff_t rows) {
+  using Row = Eigen::Map<Eigen::Vector4<Out>>;
   double energy = std::visit(
       [&]<class T>(ElementForces<T>& e) {
         const double sum = parallel_sum(e.blocks.blocks, block_grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
           return evaluate_elements(e.blocks, weights, x, e.corners.get(), begin, end);
         });
-        parallel_for(
-            rows,
-            [&](std::ptrdiff_t r) {
-              Eigen::Vector4d g = Eigen::Vector4d::Zero();
-              for (const int corner : corners_of(r))
-                g += Eigen::Map<const Eigen::Vector4<T>>(e.corners.get() + 4 * static_cast<std::ptrdiff_t>(corner))
-                         .template cast<double>();
-              Eigen::Map<Eigen::Vector4d>(gradient + 4 * r) = g;
-            },
-            row_grain);
-        return sum;
+        return sum + parallel_sum(rows, row_grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+                 double part = 0;
+                 for (std::ptrdiff_t r = begin; r < end; ++r) {
+                   Eigen::Vector4d g = Eigen::Vector4d::Zero();
+                   for (const int corner : corners_of(r))
+                     g += Eigen::Map<const Eigen::Vector4<T>>(e.corners.get() + 4 * static_cast<std::ptrdiff_t>(corner))
+                              .template cast<double>();
+                   part += add_inertia_and_forces(x, r, g);
+                   Row(gradient + 4 * r) = g.template cast<Out>();
+                 }
+                 return part;
+               });
       },
       elements);
-  if (inertia.size() > 0 || has_force)
-    energy += parallel_sum(rows, row_grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-      double part = 0;
-      for (std::ptrdiff_t r = begin; r < end; ++r) {
-        const Eigen::Map<const Eigen::Vector4d> p(x + 4 * r);
-        Eigen::Map<Eigen::Vector4d> g(gradient + 4 * r);
-        if (inertia.size() > 0) {
-          const Eigen::Vector4d d = p - Eigen::Map<const Eigen::Vector4d>(prediction.get() + 4 * r);
-          part += 0.5 * inertia[r] * d.squaredNorm();
-          g += inertia[r] * d;
-        }
-        if (has_force) {
-          const Eigen::Map<const Eigen::Vector4d> f(force.get() + 4 * r);
-          part -= f.dot(p);
-          g -= f;
-        }
-      }
-      return part;
-    });
   for (const Attachment& a : attachments) {
     if (a.vertex >= rows) continue;
     const Vector3d d = Eigen::Map<const Vector3d>(x + 4 * static_cast<std::ptrdiff_t>(a.vertex)) - a.point;
     const bool plane = !a.normal.isZero();
     const Vector3d pull = plane ? Vector3d(a.normal.dot(d) * a.normal) : d;
     energy += a.weight * pull.squaredNorm();
-    Eigen::Map<Vector3d>(gradient + 4 * static_cast<std::ptrdiff_t>(a.vertex)) += 2 * a.weight * pull;
+    Row(gradient + 4 * static_cast<std::ptrdiff_t>(a.vertex)).template head<3>() +=
+        (2 * a.weight * pull).template cast<Out>();
+  }
+  return energy;
+}
+
+template double ElasticSystem::evaluate(const double*, float*, std::ptrdiff_t);
+template double ElasticSystem::evaluate(const double*, double*, std::ptrdiff_t);
+
+double ElasticSystem::add_inertia_and_forces(const double* x, std::ptrdiff_t row, Eigen::Vector4d& gradient) const {
+  double energy = 0;
+  const Eigen::Map<const Eigen::Vector4d> p(x + 4 * row);
+  if (inertia.size() > 0) {
+    const Eigen::Vector4d d = p - Eigen::Map<const Eigen::Vector4d>(prediction.get() + 4 * row);
+    energy += 0.5 * inertia[row] * d.squaredNorm();
+    gradient += inertia[row] * d;
+  }
+  if (has_force) {
+    const Eigen::Map<const Eigen::Vector4d> f(force.get() + 4 * row);
+    energy -= f.dot(p);
+    gradient -= f;
   }
   return energy;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
@@ -22,6 +23,8 @@ struct ElementForces {
   hwy::AlignedFreeUniquePtr<T[]> corners;  ///< four values per corner of a slot
 };
 
+using AlignedVector = hwy::AlignedFreeUniquePtr<double[]>;
+
 struct ElasticSystem {
   ElasticSystem(const ElasticBody& body, const VectorXi& contact_vertices);
 
@@ -35,6 +38,7 @@ struct ElasticSystem {
   std::vector<Attachment> attachments;  ///< with solver rows
   VectorXd inertia;                     ///< mass / h^2 per solver row, or empty
   AlignedVector prediction, force;      ///< four per row
+  std::optional<LowRankInverse> memory;  ///< what earlier steps taught about the curvature
   bool has_force = false;
   std::unique_ptr<VertexSolver> solver;
   VectorXi compliance_row;  ///< row of `compliance` per solver row, or -1
@@ -53,8 +57,10 @@ struct ElasticSystem {
   void set_target(std::ptrdiff_t tet, const Matrix3d& F, const Matrix3d& stretch);
   void load(const MatrixX3d& positions, double* x) const;
   void store(const double* x, MatrixX3d& positions) const;
-  /// Energy; gradient at the first `rows` rows (4 x rows doubles).
-  double evaluate(const double* x, double* gradient, std::ptrdiff_t rows);
+  /// Energy; gradient at the first `rows` rows (4 x rows; summed in double). Out: float or double.
+  template <class Out>
+  double evaluate(const double* x, Out* gradient, std::ptrdiff_t rows);
+  double add_inertia_and_forces(const double* x, std::ptrdiff_t row, Eigen::Vector4d& gradient) const;
   /// Sum of the volumes of the tets, cubic metres.
   double volume(const double* x) const;
   /// What a force residual is measured against, after evaluate(): root of the sum over free rows of (sum of the norms

@@ -3,36 +3,28 @@
 
 #include <algorithm>
 
-#include "phiz/core/parallel.h"
-
 namespace phiz {
 
 namespace {
 
-using Segment = Eigen::Map<const Eigen::VectorXd>;
-constexpr std::ptrdiff_t grain = 8192;
+/// Drops the first of `count` entries and appends a value.
+void shift(Eigen::VectorXd& v, int count, bool drop, double value) {
+  if (drop) v.head(count - 1) = v.segment(1, count - 1).eval();
+  v[drop ? count - 1 : count] = value;
+}
 
 }  // namespace
 
-Eigen::VectorXd dots(const std::vector<const double*>& left, const double* right, std::ptrdiff_t size) {
-  const auto count = static_cast<Eigen::Index>(left.size());
-  Eigen::MatrixXd parts(count, (size + grain - 1) / grain);
-  parallel_chunks(size, grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    const Segment segment(right + begin, end - begin);
-    for (Eigen::Index k = 0; k < count; ++k)
-      parts(k, begin / grain) = Segment(left[static_cast<std::size_t>(k)] + begin, end - begin).dot(segment);
-  });
-  return parts.rowwise().sum();
-}
-
-double dot(const double* left, const double* right, std::ptrdiff_t size) {
-  return dots({left}, right, size)[0];
-}
-
 LowRankInverse::LowRankInverse(std::ptrdiff_t size, int history, double gamma)
-    : size_(size), history_(std::max(history, 1)), gamma_(gamma), sy_(history_, history_), yz_(history_, history_) {
+    : size_(size),
+      history_(std::max(history, 1)),
+      gamma_(gamma),
+      sy_(history_, history_),
+      yz_(history_, history_),
+      sg_(history_),
+      zg_(history_) {
   for (int k = 0; k < history_; ++k)
-    for (auto* set : {&s_, &z_}) set->push_back(hwy::AllocateAligned<double>(static_cast<std::size_t>(size)));
+    for (auto* set : {&s_, &z_}) set->push_back(float_vector(size));
 }
 
 void LowRankInverse::clear() {
@@ -40,29 +32,39 @@ void LowRankInverse::clear() {
   gamma_ = 1;
 }
 
-std::vector<const double*> LowRankInverse::columns() const {
-  std::vector<const double*> all;
-  all.reserve(static_cast<std::size_t>(2 * count_));
+std::vector<const float*> LowRankInverse::columns() const {
+  std::vector<const float*> all;
+  all.reserve(static_cast<std::size_t>(2 * count_) + 2);
   for (int k = 0; k < count_; ++k) all.push_back(s(k));
   for (int k = 0; k < count_; ++k) all.push_back(z(k));
   return all;
 }
 
-bool LowRankInverse::add(const double* step, const double* change, const double* inverse_change) {
-  std::vector<const double*> left = columns();
+void LowRankInverse::start(const float* g) {
+  const Eigen::VectorXd products = dots(columns(), g, size_);
+  sg_.head(count_) = products.head(count_);
+  zg_.head(count_) = products.tail(count_);
+}
+
+void LowRankInverse::add(const float* step, const float* change, const float* inverse_change, const float* g) {
+  std::vector<const float*> left = columns();
   left.insert(left.end(), {step, inverse_change});
   const Eigen::VectorXd products = dots(left, change, size_);
+  sg_.head(count_) += products.head(count_);
+  zg_.head(count_) += products.segment(count_, count_);
   const double curvature = products[2 * count_], length = products[2 * count_ + 1];
-  if (!(length > 0) || !(curvature > 1e-8 * length)) return false;
-  int dropped = 0;
-  if (count_ == history_) {
+  if (!(length > 0) || !(curvature > 1e-8 * length)) return;
+  const bool full = count_ == history_;
+  if (full) {
     const int kept = history_ - 1;
     sy_.topLeftCorner(kept, kept) = sy_.bottomRightCorner(kept, kept).eval();
     yz_.topLeftCorner(kept, kept) = yz_.bottomRightCorner(kept, kept).eval();
     first_ = slot(1);
-    dropped = 1;
   }
-  const int before = count_, last = count_ - dropped;
+  const Eigen::VectorXd onto_new = dots({step, inverse_change}, g, size_);
+  shift(sg_, count_, full, onto_new[0]);
+  shift(zg_, count_, full, onto_new[1]);
+  const int dropped = full ? 1 : 0, before = count_, last = count_ - dropped;
   for (int k = 0; k < last; ++k) {
     sy_(k, last) = products[k + dropped];
     yz_(k, last) = yz_(last, k) = products[before + k + dropped];
@@ -74,20 +76,22 @@ bool LowRankInverse::add(const double* step, const double* change, const double*
   std::copy_n(inverse_change, size_, z_[place].get());
   count_ = last + 1;
   gamma_ = curvature / length;
-  return true;
 }
 
-Eigen::VectorXd LowRankInverse::project(const double* v) const {
-  Eigen::VectorXd u = dots(columns(), v, size_);
-  u.tail(count_) *= gamma_;
+Eigen::VectorXd LowRankInverse::projection() const {
+  Eigen::VectorXd u(2 * count_);
+  u << sg_.head(count_), gamma_ * zg_.head(count_);
   return u;
 }
 
 Eigen::MatrixXd LowRankInverse::rows(std::ptrdiff_t first, std::ptrdiff_t count) const {
+  const auto part = [&](const float* column) {
+    return Eigen::Map<const Eigen::VectorXf>(column + first, count).cast<double>();
+  };
   Eigen::MatrixXd out(count, 2 * count_);
   for (int k = 0; k < count_; ++k) {
-    out.col(k) = Segment(s(k) + first, count);
-    out.col(count_ + k) = gamma_ * Segment(z(k) + first, count);
+    out.col(k) = part(s(k));
+    out.col(count_ + k) = gamma_ * part(z(k));
   }
   return out;
 }
@@ -110,14 +114,12 @@ Eigen::MatrixXd LowRankInverse::middle() const {
   return M;
 }
 
-void LowRankInverse::combine(const double* inverse_v, const Eigen::VectorXd& u, double sign, double* out) const {
-  parallel_chunks(size_, grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    Eigen::Map<Eigen::VectorXd> part(out + begin, end - begin);
-    part = (sign * gamma_) * Segment(inverse_v + begin, end - begin);
-    for (int k = 0; k < count_; ++k)
-      part += (sign * u[k]) * Segment(s(k) + begin, end - begin) +
-              (sign * gamma_ * u[count_ + k]) * Segment(z(k) + begin, end - begin);
-  });
+void LowRankInverse::apply(const float* inverse_v, const Eigen::VectorXd& u, double sign, float* out) const {
+  std::vector<const float*> all = columns();
+  all.push_back(inverse_v);
+  Eigen::VectorXd weights(2 * count_ + 1);
+  weights << sign * u.head(count_), sign * gamma_ * u.tail(count_), sign * gamma_;
+  combine(all, weights.cast<float>(), out, size_);
 }
 
 }  // namespace phiz

@@ -4,30 +4,31 @@
 /// with sparse vectors and Schur complements C H C^T without further solves.
 #pragma once
 
-#include <hwy/aligned_allocator.h>
-
 #include <Eigen/Core>
 #include <vector>
 
-namespace phiz {
+#include "phiz/elasticity/vector_kernel.h"
 
-using AlignedVector = hwy::AlignedFreeUniquePtr<double[]>;
+namespace phiz {
 
 class LowRankInverse {
  public:
-  /// Vectors of `size` doubles; at most `history` pairs. `gamma`: scale of A^-1 before the first pair.
+  /// Vectors of `size` floats; at most `history` pairs. `gamma`: scale of A^-1 before the first pair.
   LowRankInverse(std::ptrdiff_t size, int history, double gamma = 1);
 
   void clear();
   int pairs() const { return count_; }
+  int history() const { return history_; }
   double gamma() const { return gamma_; }
 
-  /// Adds the pair s (a step), y (the change of the gradient over it), z = A^-1 y. Pairs without positive curvature are
-  /// refused. Returns whether it was taken.
-  bool add(const double* s, const double* y, const double* z);
+  /// Where a run of steps starts: g is the gradient there.
+  void start(const float* g);
+  /// After the step s, over which the gradient changed by y to g, with z = A^-1 y: takes the pair, the oldest one
+  /// leaves. A pair without positive curvature is not taken.
+  void add(const float* s, const float* y, const float* z, const float* g);
 
-  /// [S^T v; gamma Z^T v] of a dense vector.
-  Eigen::VectorXd project(const double* v) const;
+  /// [S^T g; gamma Z^T g] of the last gradient.
+  Eigen::VectorXd projection() const;
   /// Entries [first, first + count) of all S and gamma Z: `count` x 2 pairs().
   Eigen::MatrixXd rows(std::ptrdiff_t first, std::ptrdiff_t count) const;
   /// M u for u = [S^T v; gamma Z^T v], 2 pairs() entries.
@@ -35,25 +36,22 @@ class LowRankInverse {
   /// M, 2 pairs() square.
   Eigen::MatrixXd middle() const;
   /// y <- sign * (gamma * inverse_v + [S, gamma Z] u).
-  void combine(const double* inverse_v, const Eigen::VectorXd& u, double sign, double* y) const;
+  void apply(const float* inverse_v, const Eigen::VectorXd& u, double sign, float* y) const;
 
  private:
   /// S and Z, oldest pair first.
-  std::vector<const double*> columns() const;
-  const double* s(int pair) const { return s_[static_cast<std::size_t>(slot(pair))].get(); }
-  const double* z(int pair) const { return z_[static_cast<std::size_t>(slot(pair))].get(); }
+  std::vector<const float*> columns() const;
+  const float* s(int pair) const { return s_[static_cast<std::size_t>(slot(pair))].get(); }
+  const float* z(int pair) const { return z_[static_cast<std::size_t>(slot(pair))].get(); }
   int slot(int pair) const { return (first_ + pair) % history_; }
 
   std::ptrdiff_t size_;
   int history_;
   int first_ = 0, count_ = 0;
   double gamma_ = 1;
-  std::vector<AlignedVector> s_, z_;
+  std::vector<FloatVector> s_, z_;
   Eigen::MatrixXd sy_, yz_;  ///< s_i . y_j and y_i . z_j, oldest first
+  Eigen::VectorXd sg_, zg_;  ///< s_i . g and z_i . g
 };
-
-/// Products left_k . right in one pass, the same bits for any number of threads.
-Eigen::VectorXd dots(const std::vector<const double*>& left, const double* right, std::ptrdiff_t size);
-double dot(const double* left, const double* right, std::ptrdiff_t size);
 
 }  // namespace phiz

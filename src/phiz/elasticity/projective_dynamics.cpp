@@ -55,6 +55,10 @@ SolveStatistics ProjectiveDynamics::solve(MatrixX3d& x, const SolveOptions& opti
   return statistics;
 }
 
+void ProjectiveDynamics::forget() {
+  system_->memory.reset();
+}
+
 double ProjectiveDynamics::energy(const MatrixX3d& x, MatrixX3d* gradient) {
   const auto rows = static_cast<std::size_t>(4 * system_->vertices);
   const AlignedVector state = hwy::AllocateAligned<double>(rows), g = hwy::AllocateAligned<double>(rows);

@@ -2,7 +2,6 @@
 #include "phiz/elasticity/vertex_solver.h"
 
 #include <cholmod.h>
-#include <hwy/aligned_allocator.h>
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include "phiz/core/error.h"
 #include "phiz/core/parallel.h"
 #include "phiz/elasticity/panel_kernel.h"
+#include "phiz/elasticity/vector_kernel.h"
 
 namespace phiz {
 
@@ -59,14 +59,6 @@ struct LowerTriangle {
 /// machine.
 constexpr int bins = 4;
 
-using FloatVector = hwy::AlignedFreeUniquePtr<float[]>;
-
-FloatVector float_vector(std::ptrdiff_t size) {
-  FloatVector v = hwy::AllocateAligned<float>(static_cast<std::size_t>(size + 16));
-  std::fill_n(v.get(), size + 16, 0.0F);
-  return v;
-}
-
 }  // namespace
 
 VectorXi elimination_order(const SparseMatrixd& pattern) {
@@ -102,7 +94,6 @@ struct VertexSolver::Factor {
   std::vector<int> bin_members[bins];  ///< supernodes of each bin, ascending
   std::vector<int> top;                ///< supernodes above all bins, ascending
   std::vector<int> top_rows;
-  FloatVector state;                            ///< four floats per row
   FloatVector outside[bins];                    ///< top rows x 4
   FloatVector scratch[bins], gathered[bins];    ///< four floats per row of the tallest panel
 
@@ -252,7 +243,6 @@ void VertexSolver::Factor::divide(const std::vector<int>& parent) {
         std::find_if(index, index + s.rows, [&](int r) { return top_id[static_cast<std::size_t>(r)] >= 0; }) - index);
     for (int r = s.inside; r < s.rows; ++r) index[r] = top_id[static_cast<std::size_t>(index[r])];
   }
-  state = float_vector(4 * n);
   for (int bin = 0; bin < bins; ++bin) {
     outside[bin] = float_vector(4 * static_cast<std::ptrdiff_t>(top_rows.size()));
     scratch[bin] = float_vector(4 * (tallest + panel_group));
@@ -302,44 +292,41 @@ std::ptrdiff_t VertexSolver::factor_entries() const {
   return factor_->value_count;
 }
 
-void VertexSolver::solve(double* x) const {
+void VertexSolver::solve(float* x) const {
   const Factor& f = *factor_;
-  float* w = f.state.get();
   const auto supernode = [&f](int k) -> const Factor::Supernode& { return f.supernodes[static_cast<std::size_t>(k)]; };
-  std::transform(x, x + 4 * f.n, w, [](double value) { return static_cast<float>(value); });
   parallel_chunks(bins, 1, [&](std::ptrdiff_t chunk, std::ptrdiff_t) {
     const int bin = static_cast<int>(chunk);
     float* outside = f.outside[bin].get();
     std::fill_n(outside, 4 * f.top_rows.size(), 0.0F);
-    for (const int k : f.bin_members[bin]) f.forward(supernode(k), bin, w, outside);
+    for (const int k : f.bin_members[bin]) f.forward(supernode(k), bin, x, outside);
   });
   for (const FloatVector& outside : f.outside)
     for (std::size_t r = 0; r < f.top_rows.size(); ++r)
-      for (std::size_t k = 0; k < 4; ++k) w[4 * static_cast<std::size_t>(f.top_rows[r]) + k] += outside[4 * r + k];
-  for (const int k : f.top) f.forward(supernode(k), 0, w, w);
-  for (auto k = f.top.rbegin(); k != f.top.rend(); ++k) f.backward(supernode(*k), 0, w, w);
+      for (std::size_t k = 0; k < 4; ++k) x[4 * static_cast<std::size_t>(f.top_rows[r]) + k] += outside[4 * r + k];
+  for (const int k : f.top) f.forward(supernode(k), 0, x, x);
+  for (auto k = f.top.rbegin(); k != f.top.rend(); ++k) f.backward(supernode(*k), 0, x, x);
   float* solved = f.outside[0].get();  // now holds the solution of the top rows for all bins
   for (std::size_t r = 0; r < f.top_rows.size(); ++r)
-    std::copy_n(w + 4 * static_cast<std::size_t>(f.top_rows[r]), 4, solved + 4 * r);
+    std::copy_n(x + 4 * static_cast<std::size_t>(f.top_rows[r]), 4, solved + 4 * r);
   parallel_chunks(bins, 1, [&](std::ptrdiff_t chunk, std::ptrdiff_t) {
     const int bin = static_cast<int>(chunk);
     for (auto k = f.bin_members[bin].rbegin(); k != f.bin_members[bin].rend(); ++k)
-      f.backward(supernode(*k), bin, w, solved);
+      f.backward(supernode(*k), bin, x, solved);
   });
-  std::copy_n(w, 4 * f.n, x);
 }
 
 MatrixXd VertexSolver::inverse_block(const VectorXi& rows) const {
   const Eigen::Index count = rows.size();
   MatrixXd block(count, count);
-  const auto x = hwy::AllocateAligned<double>(static_cast<std::size_t>(factor_->n) * 4);
+  const FloatVector x = float_vector(4 * factor_->n);
   for (Eigen::Index first = 0; first < count; first += 3) {
-    std::fill_n(x.get(), factor_->n * 4, 0.0);
+    std::fill_n(x.get(), factor_->n * 4, 0.0F);
     const Eigen::Index batch = std::min<Eigen::Index>(3, count - first);
     for (Eigen::Index k = 0; k < batch; ++k) x[static_cast<std::size_t>(4 * rows[first + k] + k)] = 1;
     solve(x.get());
     for (Eigen::Index i = 0; i < count; ++i)
-      for (Eigen::Index k = 0; k < batch; ++k) block(i, first + k) = x[static_cast<std::size_t>(4 * rows[i] + k)];
+      for (Eigen::Index k = 0; k < batch; ++k) block(i, first + k) = static_cast<double>(x[static_cast<std::size_t>(4 * rows[i] + k)]);
   }
   return 0.5 * (block + block.transpose());
 }

@@ -109,14 +109,15 @@ void animate(const FaceModel& model, const Performance& performance, const Anima
   const ExpressionMatch match = match_expressions(model, performance);
   Simulation simulation(model, options.simulation);
   const bool dynamic = options.simulation.dynamic;
-  int next = options.first_frame;
-  if (!finished.empty()) {
-    const TakeFrame& last = finished.back();
-    next += static_cast<int>(finished.size());
-    if (next > end) reject("take", "has more frames than were asked for");
-    if (last.volume.rows() == 0)
-      reject("take", "its last frame does not hold the volume that is needed to resume", "start anew");
-    simulation.restore({last.volume.cast<double>(), last.velocity.cast<double>(),
+  const int done = static_cast<int>(finished.size());
+  int next = options.first_frame + last_key_frame(done);
+  if (done > end - options.first_frame) reject("take", "has more frames than were asked for");
+  if (next > options.first_frame) {
+    const TakeFrame& before = finished[static_cast<std::size_t>(next - options.first_frame - 1)];
+    if (before.volume.rows() == 0)
+      reject("take", "the frame before its last key frame does not hold the volume that is needed to resume",
+             "start anew");
+    simulation.restore({before.volume.cast<double>(), before.velocity.cast<double>(),
                         shape_weights(match, performance, next - 1),
                         head_pose(performance, next - 1, options.head_pivot)});
   } else if (dynamic) {
@@ -132,6 +133,8 @@ void animate(const FaceModel& model, const Performance& performance, const Anima
     simulation.restore(state);
   }
   for (; next < end && !interrupted(); ++next) {
+    const int number = next - options.first_frame;
+    if (number % key_interval == 0) simulation.forget();
     TakeFrame frame;
     frame.time = performance.time[next];
     frame.part_weights = shape_weights(match, performance, next);
@@ -145,6 +148,7 @@ void animate(const FaceModel& model, const Performance& performance, const Anima
     } else {
       frame.statistics = simulation.solve_static(frame.part_weights);
     }
+    if (number < done) continue;
     frame.jaw = simulation.jaw();
     frame.skin = simulation.skin().cast<float>();
     frame.volume = simulation.positions().cast<float>();

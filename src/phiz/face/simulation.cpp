@@ -10,10 +10,10 @@
 #include "phiz/core/error.h"
 #include "phiz/core/parallel.h"
 #include "phiz/face/blend.h"
+#include "phiz/face/drawn_skin.h"
 #include "phiz/face/flesh.h"
 #include "phiz/face/head_contacts.h"
 #include "phiz/face/take.h"
-#include "phiz/geometry/folds.h"
 #include "phiz/geometry/operators.h"
 
 namespace phiz {
@@ -31,17 +31,6 @@ MatrixX3d as_stored(const MatrixX3d& x) {
   return x.cast<float>().cast<double>();
 }
 
-/// Flags of the drawn skin's vertices on the lips.
-std::vector<char> lips(const HeadTemplate& head) {
-  std::vector<char> flags(static_cast<std::size_t>(head.skin.V.rows()), 0);
-  for (const std::string region : {"upperLip", "lowerLip", "upperLipInner", "lowerLipInner"}) {
-    const auto found = head.skin_regions.find(region);
-    if (found == head.skin_regions.end()) continue;
-    for (const int v : found->second) flags[static_cast<std::size_t>(v)] = 1;
-  }
-  return flags;
-}
-
 }  // namespace
 
 struct Simulation::Parts {
@@ -53,8 +42,7 @@ struct Simulation::Parts {
   TargetBlender blender;
   VectorXd share;               ///< of the jaw's motion, per vertex
   std::vector<MatrixX3f> lead;  ///< displacement per shape beyond the jaw's share
-  MatrixX3d skin_rest;
-  FoldMender folds;
+  DrawnSkin drawn_skin;
 
   MatrixX3d x;
   MatrixX3d velocity;
@@ -70,7 +58,7 @@ struct Simulation::Parts {
         solver(body(), contacts ? contacts->scene.candidates() : VectorXi()),
         blender(face, soft, slots()),
         share(jaw_share(face.head, soft)),
-        folds(face.head.skin, lips(face.head), -0.5),
+        drawn_skin(face.head),
         x(face.head.volume.V),
         weights(VectorXd::Zero(static_cast<Eigen::Index>(face.shapes.size()))) {
     if (options.dynamic) velocity = MatrixX3d::Zero(x.rows(), 3);
@@ -87,7 +75,6 @@ struct Simulation::Parts {
       }
       lead.push_back(std::move(d));
     }
-    skin_rest = rows_of_skin(x);
   }
 
   static SimulationOptions checked(const SimulationOptions& o) {
@@ -111,8 +98,6 @@ struct Simulation::Parts {
     for (std::size_t t = 0; t < out.size(); ++t) out[t] = solver.slot(static_cast<std::ptrdiff_t>(t));
     return out;
   }
-
-  MatrixX3d rows_of_skin(const MatrixX3d& positions) const { return positions(model->head.skin_vertices, Eigen::all); }
 
   Eigen::Isometry3d jaw_of(const VectorXd& w) const { return jaw_transform(model->head.jaw, blend_jaw(*model, w)); }
 
@@ -253,20 +238,7 @@ const MatrixX3d& Simulation::positions() const {
 }
 
 MatrixX3d Simulation::skin() const {
-  const HeadTemplate& head = parts_->model->head;
-  const Eigen::Matrix3Xd moved = (parts_->rows_of_skin(parts_->x) - parts_->skin_rest).transpose();
-  MatrixX3d drawn(head.skin.V.rows(), 3);
-  parallel_for(
-      drawn.rows(),
-      [&](std::ptrdiff_t v) {
-        Vector3d p = head.skin.V.row(v);
-        for (SparseMatrixd::InnerIterator it(head.skin_interpolation, v); it; ++it)
-          p += it.value() * moved.col(it.col());
-        drawn.row(v) = p;
-      },
-      2048);
-  parts_->folds.mend(drawn);
-  return drawn;
+  return parts_->drawn_skin.at(parts_->x);
 }
 
 JawPose Simulation::jaw() const {
@@ -275,6 +247,10 @@ JawPose Simulation::jaw() const {
 
 void Simulation::set_forces(const MatrixX3d& forces) {
   parts_->solver.set_forces(forces);
+}
+
+void Simulation::forget() {
+  parts_->solver.forget();
 }
 
 SimulationState Simulation::state() const {
@@ -289,6 +265,7 @@ void Simulation::restore(const SimulationState& state) {
                                    " positions instead of " + std::to_string(p.x.rows()));
   if (p.options.dynamic && (state.velocity.rows() != p.x.rows() || !state.velocity.allFinite()))
     reject("simulation state", "has no velocities", "it comes from a static run; start anew");
+  p.solver.forget();
   p.x = as_stored(state.positions);
   if (p.options.dynamic) p.velocity = as_stored(state.velocity);
   p.weights = state.weights;

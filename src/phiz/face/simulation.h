@@ -63,6 +63,9 @@ class Simulation {
   /// External force per vertex of the volume, newtons, head frame; an empty matrix for none.
   void set_forces(const MatrixX3d& forces);
 
+  /// States depend on those before them, within the tolerances of the solve, unless forget() comes between: restore()
+  /// forgets too.
+  void forget();
   SimulationState state() const;
   void restore(const SimulationState& state);
 

@@ -243,7 +243,10 @@ SparseMatrixd skin_interpolation_between(const SkinSurface& skin, int coarse, in
   identity.setIdentity();
   const SparseMatrixd square = B * B;
   const SparseMatrixd correction = 3.0 * identity - 3.0 * B + square;
-  return (to_fine * correction).pruned();
+  SparseMatrixd carry = (to_fine * correction).pruned(1e-3, 1.0);
+  // What was left out goes to the others in proportion.
+  const VectorXd sums = carry * VectorXd::Ones(carry.cols());
+  return sums.cwiseInverse().asDiagonal() * carry;
 }
 
 }  // namespace phiz
