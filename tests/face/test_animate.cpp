@@ -24,26 +24,30 @@ void expect_same(const TakeFrame& a, const TakeFrame& b) {
 }
 
 TEST(Animate, AnInterruptedRunResumesToTheIdenticalTake) {
-  const Performance performance = testing::small_performance(14);
+  constexpr std::size_t length = key_interval + 8;
+  const Performance performance = testing::small_performance(length);
   for (const bool dynamic : {false, true}) {
     AnimateOptions options;
     options.keep_volume = true;
     options.simulation.dynamic = dynamic;
     const Take whole = animate(model(), performance, options);
-    ASSERT_EQ(whole.frames.size(), 14U);
-    std::vector<TakeFrame> frames;
-    animate(model(), performance, options, {}, [&](const TakeFrame& frame, int) {
-      frames.push_back(frame);
-      return frames.size() < 5;
-    });
-    ASSERT_EQ(frames.size(), 5U);
-    animate(model(), performance, options, std::vector<TakeFrame>(frames), [&](const TakeFrame& frame, int number) {
-      EXPECT_EQ(number, static_cast<int>(frames.size()));
-      frames.push_back(frame);
-      return true;
-    });
-    ASSERT_EQ(frames.size(), 14U);
-    for (std::size_t f = 0; f < frames.size(); ++f) expect_same(frames[f], whole.frames[f]);
+    ASSERT_EQ(whole.frames.size(), length);
+    // Before the second key frame, just before it, and after it.
+    for (const std::size_t stop : {std::size_t{5}, std::size_t{key_interval}, std::size_t{key_interval + 3}}) {
+      std::vector<TakeFrame> frames;
+      animate(model(), performance, options, {}, [&](const TakeFrame& frame, int) {
+        frames.push_back(frame);
+        return frames.size() < stop;
+      });
+      ASSERT_EQ(frames.size(), stop);
+      animate(model(), performance, options, std::vector<TakeFrame>(frames), [&](const TakeFrame& frame, int number) {
+        EXPECT_EQ(number, static_cast<int>(frames.size()));
+        frames.push_back(frame);
+        return true;
+      });
+      ASSERT_EQ(frames.size(), length);
+      for (std::size_t f = 0; f < frames.size(); ++f) expect_same(frames[f], whole.frames[f]);
+    }
   }
 }
 

@@ -19,11 +19,12 @@ struct Watch {
   int obstacle = -1;
   int own_patch = -1;
   int pair = -1;
-  int hint = -1;  ///< the triangle that was closest
-  bool known = false;
-  double clear = 0;   ///< no contact was nearer than this ...
-  Vector3d at;        ///< ... when the vertex was here
-  double travel = 0;  ///< ... and the obstacle had travelled so far
+  int hint = -1;  ///< the triangle that was closest in the last search ...
+  bool known = false, searched = false;
+  double clear = 0;                     ///< ... no contact was nearer than this, if known ...
+  std::vector<SignedContact> contacts;  ///< ... and these were found ...
+  Vector3d at;                          ///< ... when the vertex was here
+  double travel = 0;                    ///< ... and the obstacle had travelled so far
 };
 
 constexpr double search_reach = 2.5e-3;  ///< beyond the margin; a longer search is seldom of use for the next call
@@ -48,12 +49,19 @@ struct ContactScene::State {
                same_side;
   }
 
+  const Obstacle& obstacle_of(const Watch& watch) const { return obstacles[static_cast<std::size_t>(watch.obstacle)]; }
+
+  /// How far vertex and obstacle may have come since the last search.
+  double way_since_search(const Watch& watch, const Vector3d& p) const {
+    return (p - watch.at).norm() + obstacle_of(watch).travel() - watch.travel;
+  }
+
   /// Lower bound of the distance to the obstacle by what its last search found.
   double clearance(const Watch& watch, const Vector3d& p) const {
-    if (!watch.known) return 0;
-    const double travel = obstacles[static_cast<std::size_t>(watch.obstacle)].travel() - watch.travel;
-    return watch.clear - (p - watch.at).norm() - travel;
+    return watch.known ? watch.clear - way_since_search(watch, p) : 0;
   }
+
+  void search(Watch& watch, const Vector3d& p) const;
 };
 
 ContactScene::ContactScene(Eigen::Index vertex_count, const ContactOptions& options)
@@ -118,46 +126,66 @@ VectorXi ContactScene::candidates() const {
   return Eigen::Map<const VectorXi>(all.data(), static_cast<Eigen::Index>(all.size()));
 }
 
+/// Finds the contacts of a watched vertex that is at p.
+void ContactScene::State::search(Watch& watch, const Vector3d& p) const {
+  const double reach = options.margin + search_reach;
+  const Obstacle& obstacle = obstacle_of(watch);
+  const std::optional<SignedContact> nearest = obstacle.closest(p, reach, watch.hint);
+  watch.hint = nearest ? nearest->triangle : -1;
+  watch.contacts.clear();
+  if (is_contact(watch, nearest) && nearest->gap <= options.margin) {
+    watch.contacts.push_back(*nearest);
+    if (nearest->gap < hollow_reach)
+      for (const SignedContact& second : obstacle.beside(p, *nearest, hollow_reach + std::abs(nearest->gap)))
+        watch.contacts.push_back(second);
+  }
+  // The far side of an obstacle and the rim of a patch are no contact, yet near: look again.
+  watch.clear = nearest ? std::abs(nearest->gap) : reach;
+  watch.known = watch.clear > options.margin && (!nearest || nearest->gap > 0);
+  watch.searched = true;
+  watch.at = p;
+  watch.travel = obstacle.travel();
+}
+
 std::vector<ContactRow> ContactScene::detect(const PositionView& positions) {
   State& s = *state_;
-  for (Obstacle& obstacle : s.obstacles)
-    if (!obstacle.is_rigid()) obstacle.follow(positions);
-  const double margin = s.options.margin;
-  std::vector<std::vector<SignedContact>> found(s.watches.size());
+  for (Obstacle& obstacle : s.obstacles) obstacle.follow(positions);
+  enum : char { clear, kept, stale };
+  std::vector<char> status(s.watches.size());
   parallel_for(
       static_cast<std::ptrdiff_t>(s.watches.size()),
       [&](std::ptrdiff_t i) {
-        Watch& watch = s.watches[static_cast<std::size_t>(i)];
+        const Watch& watch = s.watches[static_cast<std::size_t>(i)];
         const Vector3d p = positions[watch.vertex];
-        if (s.clearance(watch, p) > margin) return;
-        const double reach = margin + search_reach;
-        const Obstacle& obstacle = s.obstacles[static_cast<std::size_t>(watch.obstacle)];
-        const std::optional<SignedContact> nearest = obstacle.closest(p, reach, watch.hint);
-        watch.hint = nearest ? nearest->triangle : -1;
-        if (s.is_contact(watch, nearest) && nearest->gap <= margin) {
-          std::vector<SignedContact>& contacts = found[static_cast<std::size_t>(i)];
-          contacts.push_back(*nearest);
-          if (nearest->gap < hollow_reach)
-            for (const SignedContact& second : obstacle.beside(p, *nearest, hollow_reach + std::abs(nearest->gap)))
-              contacts.push_back(second);
-        }
-        // The far side of an obstacle and the rim of a patch are no contact, yet near: look again.
-        watch.clear = nearest ? std::abs(nearest->gap) : reach;
-        watch.known = watch.clear > margin && (!nearest || nearest->gap > 0);
-        watch.at = p;
-        watch.travel = obstacle.travel();
+        const bool is_kept = watch.searched && s.way_since_search(watch, p) <= s.options.lag;
+        status[static_cast<std::size_t>(i)] = s.clearance(watch, p) > s.options.margin ? clear : is_kept ? kept : stale;
       },
-      64);
+      512);
+  std::vector<std::size_t> searches;
+  for (std::size_t i = 0; i < status.size(); ++i)
+    if (status[i] == stale) {
+      searches.push_back(i);
+      s.obstacles[static_cast<std::size_t>(s.watches[i].obstacle)].refit();
+    }
+  parallel_for(
+      static_cast<std::ptrdiff_t>(searches.size()),
+      [&](std::ptrdiff_t i) {
+        Watch& watch = s.watches[searches[static_cast<std::size_t>(i)]];
+        s.search(watch, positions[watch.vertex]);
+      },
+      16);
 
   std::vector<ContactRow> rows;
   for (std::size_t i = 0; i < s.watches.size(); ++i) {
-    const Obstacle& obstacle = s.obstacles[static_cast<std::size_t>(s.watches[i].obstacle)];
-    for (const SignedContact& contact : found[i]) {
+    if (status[i] == clear) continue;
+    const Watch& watch = s.watches[i];
+    const Obstacle& obstacle = s.obstacle_of(watch);
+    for (const SignedContact& contact : watch.contacts) {
       ContactRow row;
-      row.vertices[0] = s.watches[i].vertex;
+      row.vertices[0] = watch.vertex;
       row.normal = contact.normal;
-      row.gap = contact.gap;
-      row.pair = s.watches[i].pair;
+      row.gap = contact.normal.dot(positions[watch.vertex] - obstacle.point(contact));
+      row.pair = watch.pair;
       row.face = contact.triangle;
       if (!obstacle.is_rigid())
         for (int k = 0; k < 3; ++k) {
@@ -174,10 +202,16 @@ std::vector<ContactRow> ContactScene::detect(const PositionView& positions) {
   return rows;
 }
 
+void ContactScene::forget() {
+  for (Watch& watch : state_->watches) watch.searched = watch.known = false;
+}
+
 double ContactScene::penetration(const PositionView& positions) const {
   State& s = *state_;
-  for (Obstacle& obstacle : s.obstacles)
-    if (!obstacle.is_rigid()) obstacle.follow(positions);
+  for (Obstacle& obstacle : s.obstacles) {
+    obstacle.follow(positions);
+    obstacle.refit();
+  }
   std::vector<double> depth(s.watches.size(), 0.0);
   parallel_for(
       static_cast<std::ptrdiff_t>(s.watches.size()),
@@ -185,8 +219,7 @@ double ContactScene::penetration(const PositionView& positions) const {
         const Watch& watch = s.watches[static_cast<std::size_t>(i)];
         const Vector3d p = positions[watch.vertex];
         if (s.clearance(watch, p) > 0) return;
-        const auto contact =
-            s.obstacles[static_cast<std::size_t>(watch.obstacle)].closest(p, s.options.depth_limit, watch.hint);
+        const auto contact = s.obstacle_of(watch).closest(p, s.options.depth_limit, watch.hint);
         if (s.is_contact(watch, contact)) depth[static_cast<std::size_t>(i)] = std::max(0.0, -contact->gap);
       },
       64);

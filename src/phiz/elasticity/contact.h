@@ -14,6 +14,9 @@ namespace phiz {
 struct ContactOptions {
   double margin = 6e-4;       ///< rows are made for gaps below this, metres: what a vertex may cover in one iteration
   double depth_limit = 6e-3;  ///< a vertex deeper than this is taken to be on the other side of the obstacle, metres
+  /// A contact keeps its plane until vertex and obstacle together may have moved this far, metres: near a solution
+  /// planes change by less than that, and the set of contacts must not change without end.
+  double lag = 4e-5;
 };
 
 /// Where the vertices of a body are: row `row[v]` (or v if null) of an array with `stride` doubles per row.
@@ -62,8 +65,11 @@ class ContactScene {
   VectorXi candidates() const;
 
   /// Rows of all pairs whose gap is below the margin, in a fixed order; more than one for a vertex in a hollow. Skips
-  /// vertices that cannot have come near since the last call; what it returns does not depend on earlier calls.
+  /// vertices that cannot have come near since the last call. Planes may be as old as the lag allows; gaps are those of
+  /// the present state.
   std::vector<ContactRow> detect(const PositionView& positions);
+  /// The next detect() depends on its state only.
+  void forget();
 
   /// Deepest penetration over all pairs, metres, >= 0, of every vertex that can have come near: a
   /// second look at the state, apart from the rows that the solver used.

@@ -15,10 +15,6 @@ namespace {
 /// Rows whose gap would stay above this after the unconstrained step are left out of the multiplier problem, metres.
 constexpr double idle_gap = 2e-4;
 
-/// The rows of contact serve until a vertex may have moved this far, metres: near a solution their planes move less than
-/// that, and the set of rows must not change without end.
-constexpr double detection_lag = 4e-5;
-
 /// Iterations before steps are relaxed.
 constexpr int settle = 5;
 
@@ -30,8 +26,9 @@ constexpr double first_stretch = 1.6;
 
 /// The system's memory, or a new one if there is none of that length.
 LowRankInverse& memory_of(ElasticSystem& system, int history) {
-  if (!system.memory || system.memory->history() != std::max(1, history))
-    system.memory.emplace(system.size(), history, history > 0 ? first_stretch : 1);
+  const int pairs = std::clamp(history, 1, LowRankInverse::most_history);
+  if (!system.memory || system.memory->history() != pairs)
+    system.memory.emplace(system.size(), pairs, history > 0 ? first_stretch : 1);
   return *system.memory;
 }
 
@@ -52,17 +49,6 @@ double row_product(const ContactRow& row, const Vectors& v) {
   Vector3d sum = Vector3d::Zero();
   for (int k = 0; k < row.count; ++k) sum += row.coefficients[k] * v(row.vertices[k]);
   return sum.dot(row.normal);
-}
-
-/// v <- v + scale C^T lambda.
-void add_contact_forces(const std::vector<ContactRow>& rows, const Eigen::VectorXd& lambda, double scale, float* v) {
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const double force = scale * lambda[static_cast<Eigen::Index>(i)];
-    if (force == 0) continue;
-    for (int k = 0; k < rows[i].count; ++k)
-      Eigen::Map<Eigen::Vector3f>(v + 4 * static_cast<std::ptrdiff_t>(rows[i].vertices[k])) +=
-          (force * rows[i].coefficients[k] * rows[i].normal).cast<float>();
-  }
 }
 
 double deepest(const ContactRows& contact) {
@@ -107,20 +93,23 @@ bool Descent::was_active(std::int64_t key) const {
   return std::binary_search(active_keys_.begin(), active_keys_.end(), key);
 }
 
-void Descent::find_step(const ContactRows& contact, const float* inverse_gradient, float* p) {
+void Descent::find_step(const ContactRows& contact, const float* gradient, const float* inverse_gradient, float* p) {
   const auto row_count = static_cast<Eigen::Index>(contact.rows.size());
   const Eigen::VectorXd u = inverse_.projection(), free_middle = inverse_.middle(u);
   // Where the vertices in contact would go without it.
   const auto free_motion = [&](int row) -> Vector3d {
     return -inverse_.gamma() * vector_at(inverse_gradient, row) -
-           inverse_.rows(4 * static_cast<std::ptrdiff_t>(row), 3) * free_middle;
+           inverse_.rows(4 * static_cast<std::ptrdiff_t>(row)) * free_middle;
   };
   lambda_ = Eigen::VectorXd::Zero(row_count);
   row_motion_.resize(row_count);
+  parallel_for(
+      row_count,
+      [&](std::ptrdiff_t i) { row_motion_[i] = row_product(contact.rows[static_cast<std::size_t>(i)], free_motion); },
+      64);
   std::vector<Eigen::Index> working;
   for (Eigen::Index i = 0; i < row_count; ++i) {
     const auto s = static_cast<std::size_t>(i);
-    row_motion_[i] = row_product(contact.rows[s], free_motion);
     if (contact.rows[s].gap + row_motion_[i] < idle_gap || was_active(contact.key[s])) working.push_back(i);
   }
   Eigen::MatrixXd U = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(working.size()), 2 * inverse_.pairs());
@@ -128,7 +117,7 @@ void Descent::find_step(const ContactRows& contact, const float* inverse_gradien
     const ContactRow& row = contact.rows[static_cast<std::size_t>(working[static_cast<std::size_t>(i)])];
     for (int k = 0; k < row.count; ++k)
       U.row(i) += row.coefficients[k] * row.normal.transpose() *
-                  inverse_.rows(4 * static_cast<std::ptrdiff_t>(row.vertices[k]), 3);
+                  inverse_.rows(4 * static_cast<std::ptrdiff_t>(row.vertices[k]));
   }
   find_multipliers(contact, working, U);
   active_keys_.clear();
@@ -139,14 +128,12 @@ void Descent::find_step(const ContactRows& contact, const float* inverse_gradien
     return;
   }
   std::sort(active_keys_.begin(), active_keys_.end());
-  std::fill_n(force_.get(), system_.size(), 0.0F);
-  add_contact_forces(contact.rows, lambda_, 1, force_.get());
+  // Near a solution the contact forces all but cancel the gradient: one solve for both keeps what is left.
+  subtract_contact_forces(contact, gradient);
   system_.solver->solve(force_.get());
-  combine({inverse_gradient, force_.get()}, Eigen::Vector2f(1, -1), force_.get(), system_.size());
   inverse_.apply(force_.get(), inverse_.middle(u - U.transpose() * lambda_(working)), -1, p);
   for (Eigen::Index i = 0; i < row_count; ++i)
-    row_motion_[i] =
-        row_product(contact.rows[static_cast<std::size_t>(i)], [p](int row) { return vector_at(p, row); });
+    row_motion_[i] = row_product(contact.rows[static_cast<std::size_t>(i)], [p](int row) { return vector_at(p, row); });
 }
 
 void Descent::find_multipliers(const ContactRows& contact, const std::vector<Eigen::Index>& working,
@@ -189,9 +176,20 @@ void Descent::find_multipliers(const ContactRows& contact, const std::vector<Eig
   if (multipliers.size() == m) lambda_(working) = multipliers;
 }
 
-double Descent::residual(const ContactRows& contact, const float* gradient) {
+void Descent::subtract_contact_forces(const ContactRows& contact, const float* gradient) {
   std::copy_n(gradient, system_.size(), force_.get());
-  add_contact_forces(contact.rows, lambda_, -1, force_.get());
+  for (std::size_t i = 0; i < contact.rows.size(); ++i) {
+    const double lambda = lambda_[static_cast<Eigen::Index>(i)];
+    if (lambda == 0) continue;
+    const ContactRow& row = contact.rows[i];
+    for (int k = 0; k < row.count; ++k)
+      Eigen::Map<Eigen::Vector3f>(force_.get() + 4 * static_cast<std::ptrdiff_t>(row.vertices[k])) -=
+          (lambda * row.coefficients[k] * row.normal).cast<float>();
+  }
+}
+
+double Descent::residual(const ContactRows& contact, const float* gradient) {
+  subtract_contact_forces(contact, gradient);
   return std::sqrt(dot(force_.get(), force_.get(), system_.size())) / system_.force_scale();
 }
 
@@ -204,7 +202,6 @@ SolveStatistics Descent::run(double* x) {
   std::copy_n(x, 4 * system_.vertices, trial.get());
   bool has_apart = false;  // the last state without penetration
   double last_length2 = 0, relaxation = 1;
-  double moved = 0;  // since the contact rows were found, metres
   SolveStatistics statistics;
   double energy = system_.evaluate(x, g.get(), system_.free);
   std::copy_n(g.get(), size, v.get());
@@ -214,7 +211,7 @@ SolveStatistics Descent::run(double* x) {
 
   while (statistics.iterations < options_.max_iterations) {
     ++statistics.iterations;
-    find_step(contact, v.get(), p.get());
+    find_step(contact, g.get(), v.get(), p.get());
     const bool plain = options_.history > 0 && inverse_.pairs() == 0;
     const double contact_work = lambda_.dot(row_motion_);
     const Eigen::VectorXd products = dots({g.get(), last_p.get(), p.get()}, p.get(), size);
@@ -265,14 +262,7 @@ SolveStatistics Descent::run(double* x) {
     const bool last = statistics.iterations == options_.max_iterations;
     const bool stalled = relaxation < 0.5 && alpha * reach <= options_.step_tolerance;
     if (small_step || last || stalled) statistics.residual = residual(contact, next_g.get());
-    moved += alpha * reach;
-    if (small_step || last || stalled || moved > detection_lag) {
-      contact = detect(x);
-      moved = 0;
-    } else {
-      for (std::size_t i = 0; i < contact.rows.size(); ++i)
-        contact.rows[i].gap += alpha * row_motion_[static_cast<Eigen::Index>(i)];
-    }
+    contact = detect(x);
     statistics.penetration = deepest(contact);
     statistics.converged = small_step && statistics.residual <= options_.residual_tolerance &&
                            statistics.penetration <= options_.penetration_tolerance;

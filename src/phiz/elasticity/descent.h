@@ -27,11 +27,13 @@ class Descent {
 
  private:
   ContactRows detect(const double* x);
-  /// Step p from the image of the gradient under A^-1; fills lambda_ and row_motion_.
-  void find_step(const ContactRows& contact, const float* inverse_gradient, float* p);
+  /// Step p from the gradient and its image under A^-1; fills lambda_ and row_motion_.
+  void find_step(const ContactRows& contact, const float* gradient, const float* inverse_gradient, float* p);
   /// Fills lambda_ for the rows `working`. U: their products with the quasi-Newton pairs.
   void find_multipliers(const ContactRows& contact, const std::vector<Eigen::Index>& working, const Eigen::MatrixXd& U);
   bool was_active(std::int64_t key) const;
+  /// force_ <- gradient - C^T lambda.
+  void subtract_contact_forces(const ContactRows& contact, const float* gradient);
   /// Relative norm of the forces at the state that was evaluated last, whose gradient is given.
   double residual(const ContactRows& contact, const float* gradient);
 
@@ -42,7 +44,7 @@ class Descent {
   Eigen::VectorXd lambda_;      ///< multiplier per row of the last find_step, newtons
   Eigen::VectorXd row_motion_;  ///< C p of the last find_step, metres
   std::vector<std::int64_t> active_keys_;
-  FloatVector force_;
+  FloatVector force_;  ///< room for a vector of forces
 };
 
 }  // namespace phiz

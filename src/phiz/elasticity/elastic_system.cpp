@@ -45,7 +45,8 @@ template <class T>
 ElementForces<T> element_forces(const MatrixX3d& rest, const MatrixX4i& tets, const VectorXd& stiffness,
                                 const VectorXd& share) {
   ElementForces<T> elements{ElementBlocks<T>(rest, tets, stiffness, share), nullptr};
-  elements.corners = hwy::AllocateAligned<T>(static_cast<std::size_t>(16 * elements.blocks.blocks * ElementBlocks<T>::width));
+  elements.corners =
+      hwy::AllocateAligned<T>(static_cast<std::size_t>(16 * elements.blocks.blocks * ElementBlocks<T>::width));
   return elements;
 }
 
@@ -237,10 +238,11 @@ double ElasticSystem::evaluate(const double* x, Out* gradient, std::ptrdiff_t ro
         return sum + parallel_sum(rows, row_grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
                  double part = 0;
                  for (std::ptrdiff_t r = begin; r < end; ++r) {
-                   Eigen::Vector4d g = Eigen::Vector4d::Zero();
+                   Eigen::Vector4<T> sum_of_tets = Eigen::Vector4<T>::Zero();
                    for (const int corner : corners_of(r))
-                     g += Eigen::Map<const Eigen::Vector4<T>>(e.corners.get() + 4 * static_cast<std::ptrdiff_t>(corner))
-                              .template cast<double>();
+                     sum_of_tets += Eigen::Map<const Eigen::Vector4<T>, Eigen::Aligned16>(
+                         e.corners.get() + 4 * static_cast<std::ptrdiff_t>(corner));
+                   Eigen::Vector4d g = sum_of_tets.template cast<double>();
                    part += add_inertia_and_forces(x, r, g);
                    Row(gradient + 4 * r) = g.template cast<Out>();
                  }
@@ -288,7 +290,8 @@ double ElasticSystem::force_scale() const {
             double magnitude = 0;
             for (const int corner : corners_of(r))
               magnitude += static_cast<double>(
-                  Eigen::Map<const Eigen::Vector3<T>>(e.corners.get() + 4 * static_cast<std::ptrdiff_t>(corner)).norm());
+                  Eigen::Map<const Eigen::Vector3<T>>(e.corners.get() + 4 * static_cast<std::ptrdiff_t>(corner))
+                      .norm());
             sum += magnitude * magnitude;
           }
           return sum;

@@ -35,9 +35,9 @@ struct ElasticSystem {
   std::vector<std::ptrdiff_t> slot_of;  ///< kernel slot of each tet
   std::variant<ElementForces<float>, ElementForces<double>> elements;
   TermWeights weights;
-  std::vector<Attachment> attachments;  ///< with solver rows
-  VectorXd inertia;                     ///< mass / h^2 per solver row, or empty
-  AlignedVector prediction, force;      ///< four per row
+  std::vector<Attachment> attachments;   ///< with solver rows
+  VectorXd inertia;                      ///< mass / h^2 per solver row, or empty
+  AlignedVector prediction, force;       ///< four per row
   std::optional<LowRankInverse> memory;  ///< what earlier steps taught about the curvature
   bool has_force = false;
   std::unique_ptr<VertexSolver> solver;
@@ -57,7 +57,7 @@ struct ElasticSystem {
   void set_target(std::ptrdiff_t tet, const Matrix3d& F, const Matrix3d& stretch);
   void load(const MatrixX3d& positions, double* x) const;
   void store(const double* x, MatrixX3d& positions) const;
-  /// Energy; gradient at the first `rows` rows (4 x rows; summed in double). Out: float or double.
+  /// Energy; gradient at the first `rows` rows (4 x rows). Out: float or double.
   template <class Out>
   double evaluate(const double* x, Out* gradient, std::ptrdiff_t rows);
   double add_inertia_and_forces(const double* x, std::ptrdiff_t row, Eigen::Vector4d& gradient) const;

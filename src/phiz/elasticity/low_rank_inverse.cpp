@@ -17,7 +17,7 @@ void shift(Eigen::VectorXd& v, int count, bool drop, double value) {
 
 LowRankInverse::LowRankInverse(std::ptrdiff_t size, int history, double gamma)
     : size_(size),
-      history_(std::max(history, 1)),
+      history_(std::clamp(history, 1, most_history)),
       gamma_(gamma),
       sy_(history_, history_),
       yz_(history_, history_),
@@ -84,11 +84,11 @@ Eigen::VectorXd LowRankInverse::projection() const {
   return u;
 }
 
-Eigen::MatrixXd LowRankInverse::rows(std::ptrdiff_t first, std::ptrdiff_t count) const {
-  const auto part = [&](const float* column) {
-    return Eigen::Map<const Eigen::VectorXf>(column + first, count).cast<double>();
+LowRankInverse::Rows LowRankInverse::rows(std::ptrdiff_t first) const {
+  const auto part = [first](const float* column) {
+    return Eigen::Map<const Eigen::Vector3f>(column + first).cast<double>();
   };
-  Eigen::MatrixXd out(count, 2 * count_);
+  Rows out(3, 2 * count_);
   for (int k = 0; k < count_; ++k) {
     out.col(k) = part(s(k));
     out.col(count_ + k) = gamma_ * part(z(k));

@@ -13,7 +13,8 @@ namespace phiz {
 
 class LowRankInverse {
  public:
-  /// Vectors of `size` floats; at most `history` pairs. `gamma`: scale of A^-1 before the first pair.
+  /// Vectors of `size` floats; at most `history` pairs, no more than most_history. `gamma`: scale of A^-1 before the
+  /// first pair.
   LowRankInverse(std::ptrdiff_t size, int history, double gamma = 1);
 
   void clear();
@@ -29,8 +30,10 @@ class LowRankInverse {
 
   /// [S^T g; gamma Z^T g] of the last gradient.
   Eigen::VectorXd projection() const;
-  /// Entries [first, first + count) of all S and gamma Z: `count` x 2 pairs().
-  Eigen::MatrixXd rows(std::ptrdiff_t first, std::ptrdiff_t count) const;
+  static constexpr int most_history = 16;
+  using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 2 * most_history>;
+  /// Entries first, first + 1 and first + 2 of all S and gamma Z: 3 x 2 pairs().
+  Rows rows(std::ptrdiff_t first) const;
   /// M u for u = [S^T v; gamma Z^T v], 2 pairs() entries.
   Eigen::VectorXd middle(const Eigen::VectorXd& u) const;
   /// M, 2 pairs() square.

@@ -95,7 +95,17 @@ void Obstacle::follow(const PositionView& positions) {
   }
   if (longest2 == 0) return;
   travel_ += std::sqrt(longest2);
-  query_.refit(V_);
+  refitted_ = false;
+}
+
+void Obstacle::refit() {
+  if (!refitted_) query_.refit(V_);
+  refitted_ = true;
+}
+
+Vector3d Obstacle::point(const SignedContact& contact) const {
+  const Vector3d p = (contact.barycentric.transpose() * V_(F_.row(contact.triangle), Eigen::all)).transpose();
+  return is_rigid() ? Vector3d(transform_ * p) : p;
 }
 
 std::optional<SignedContact> Obstacle::closest(const Vector3d& point, double reach, int hint) const {

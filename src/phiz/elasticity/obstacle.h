@@ -32,8 +32,9 @@ class Obstacle {
   const MatrixX3i& triangles() const { return F_; }
 
   void place(const Eigen::Isometry3d& transform);
-  /// Takes the positions of a patch.
+  /// Takes the positions of a patch; the queries below want refit() after it.
   void follow(const PositionView& positions);
+  void refit();
 
   /// The closest point within `reach`. The sign comes from the pseudo-normal of the closest face, edge or vertex
   /// (Baerentzen and Aanaes 2005).
@@ -43,6 +44,9 @@ class Obstacle {
   /// Faces beside the closest one that stand up from its plane within `reach` of the point: in the hollow between two
   /// faces a vertex must stay outside of both. At most two, nearest first; the gap is that to the face's plane.
   std::vector<SignedContact> beside(const Vector3d& point, const SignedContact& closest, double reach) const;
+
+  /// Where the point of a contact is now, by its triangle and barycentric coordinates.
+  Vector3d point(const SignedContact& contact) const;
 
   bool has_vertex(int vertex) const;
   /// Outward normal at body vertex `vertex`, zero if it is not one of the obstacle's.
@@ -67,6 +71,7 @@ class Obstacle {
   Eigen::Isometry3d transform_ = Eigen::Isometry3d::Identity();
   Vector3d low_, high_;
   double travel_ = 0;
+  bool refitted_ = true;
 };
 
 }  // namespace phiz

@@ -74,8 +74,8 @@ class ProjectiveDynamics {
 
   /// Minimises the energy over the free vertices, from and to `x`; rows of fixed vertices are their prescribed
   /// positions. `contacts` may be null. On failure (statistics.converged = false) x is the best state reached, never
-  /// NaN. Steps of one solve speed up the next: results depend on earlier solves, within the tolerances, unless forget()
-  /// comes between.
+  /// NaN. Steps of one solve speed up the next: results depend on earlier solves, within the tolerances, unless
+  /// forget() comes between.
   SolveStatistics solve(MatrixX3d& x, const SolveOptions& options, ContactScene* contacts = nullptr);
 
   /// Drops what earlier solves taught about the curvature.

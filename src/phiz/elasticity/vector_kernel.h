@@ -19,7 +19,6 @@ Eigen::VectorXd dots(const std::vector<const float*>& left, const float* right, 
 double dot(const float* left, const float* right, std::ptrdiff_t size);
 
 /// out = sum_k weights_k columns_k in one pass. `out` may be one of the columns.
-void combine(const std::vector<const float*>& columns, const Eigen::VectorXf& weights, float* out,
-             std::ptrdiff_t size);
+void combine(const std::vector<const float*>& columns, const Eigen::VectorXf& weights, float* out, std::ptrdiff_t size);
 
 }  // namespace phiz

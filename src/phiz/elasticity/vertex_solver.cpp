@@ -75,33 +75,30 @@ VectorXi elimination_order(const SparseMatrixd& pattern) {
 }
 
 struct VertexSolver::Factor {
-  /// Of the block column [L1; L2] of the factor, the panel Q = [L1^-1; L2 L1^-1] does both passes. Forward: [y; z] = Q x1,
-  /// x1 <- y, x2 <- x2 - z.
-  /// Backward: x1 <- Q^T [x1; -x2].
+  /// Of the block column [L1; L2] of the factor, the panel Q = [L1^-1; L2 L1^-1] does both passes. Forward: [y; z] = Q
+  /// x1, x1 <- y, x2 <- x2 - z. Backward: x1 <- Q^T [x1; -x2].
   struct Supernode {
     int first = 0, columns = 0;
-    int rows = 0;                                  ///< below the diagonal block
-    int inside = 0;                                ///< of these, the first ones, which belong to the same bin
-    std::ptrdiff_t index = 0;                      ///< into row_index
-    std::ptrdiff_t forward = 0, backward = 0;      ///< into values: Q, Q^T
+    int rows = 0;                              ///< below the diagonal block
+    int inside = 0;                            ///< of these, the first ones, which belong to the same bin
+    std::ptrdiff_t index = 0;                  ///< into row_index
+    std::ptrdiff_t forward = 0, backward = 0;  ///< into values: Q, Q^T
   };
   std::ptrdiff_t n = 0;
   std::vector<Supernode> supernodes;
   std::vector<int> row_index;  ///< row of x, or of the bin's buffer of top rows
   FloatVector values;
   std::ptrdiff_t value_count = 0;
-  int tallest = 0;  ///< panel, rows
+  int tallest = 0;                     ///< panel, rows
   std::vector<int> bin_members[bins];  ///< supernodes of each bin, ascending
   std::vector<int> top;                ///< supernodes above all bins, ascending
   std::vector<int> top_rows;
-  FloatVector outside[bins];                    ///< top rows x 4
-  FloatVector scratch[bins], gathered[bins];    ///< four floats per row of the tallest panel
+  FloatVector outside[bins];                  ///< top rows x 4
+  FloatVector scratch[bins], gathered[bins];  ///< four floats per row of the tallest panel
 
   void forward(const Supernode& s, int bin, float* x, float* top_part) const {
     const std::ptrdiff_t columns = s.columns;
     float* mine = x + 4 * static_cast<std::ptrdiff_t>(s.first);
-    // Contact forces sit on few vertices: what they do not reach stays zero.
-    if (std::all_of(mine, mine + 4 * columns, [](float value) { return value == 0; })) return;
     float* product = scratch[bin].get();
     panel_multiply(values.get() + s.forward, columns + s.rows, columns, mine, product);
     std::copy_n(product, 4 * columns, mine);
@@ -162,7 +159,8 @@ void VertexSolver::Factor::take(const cholmod_factor& L) {
     const std::ptrdiff_t columns = s.columns, height = s.columns + s.rows;
     const Eigen::Map<const MatrixXd> dense(x + px[k], height, columns);
     MatrixXd Q(height, columns);
-    Q.topRows(columns) = dense.topRows(columns).triangularView<Eigen::Lower>().solve(MatrixXd::Identity(columns, columns));
+    Q.topRows(columns) =
+        dense.topRows(columns).triangularView<Eigen::Lower>().solve(MatrixXd::Identity(columns, columns));
     Q.bottomRows(s.rows) = dense.bottomRows(s.rows) * Q.topRows(columns);
     for (std::ptrdiff_t j = 0; j < columns; ++j)
       for (std::ptrdiff_t i = 0; i < height; ++i) {
@@ -326,7 +324,8 @@ MatrixXd VertexSolver::inverse_block(const VectorXi& rows) const {
     for (Eigen::Index k = 0; k < batch; ++k) x[static_cast<std::size_t>(4 * rows[first + k] + k)] = 1;
     solve(x.get());
     for (Eigen::Index i = 0; i < count; ++i)
-      for (Eigen::Index k = 0; k < batch; ++k) block(i, first + k) = static_cast<double>(x[static_cast<std::size_t>(4 * rows[i] + k)]);
+      for (Eigen::Index k = 0; k < batch; ++k)
+        block(i, first + k) = static_cast<double>(x[static_cast<std::size_t>(4 * rows[i] + k)]);
   }
   return 0.5 * (block + block.transpose());
 }

@@ -26,8 +26,8 @@ class VertexSolver {
   std::ptrdiff_t rows() const;
   std::ptrdiff_t factor_entries() const;
 
-  /// x <- A^-1 x for three right-hand sides, row-interleaved: rows() x 4 floats, of which the last becomes zero; 64-byte
-  /// aligned. The same bits for any number of threads. Not to be called from two threads at once on one object.
+  /// x <- A^-1 x for three right-hand sides, row-interleaved: rows() x 4 floats, of which the last becomes zero;
+  /// 64-byte aligned. The same bits for any number of threads. Not to be called from two threads at once on one object.
   void solve(float* x) const;
 
   /// The rows and columns `rows` of A^-1.

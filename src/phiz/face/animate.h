@@ -53,8 +53,9 @@ constexpr int last_key_frame(int finished) {
 
 /// Plays the frames of a performance and calls `on_frame` for each. The result does not depend on where a run was
 /// interrupted: to continue one, give its `finished` frames, of which the one before last_key_frame() must hold
-/// `volume` (and `velocity` in dynamics); the others may be empty. It is played again from there, without calls. A frame that did not converge is the best state reached and says so. Stops
-/// early, without error, when interrupted() or when the callback says so.
+/// `volume` (and `velocity` in dynamics); the others may be empty. It is played again from there, without calls. A
+/// frame that did not converge is the best state reached and says so. Stops early, without error, when interrupted() or
+/// when the callback says so.
 void animate(const FaceModel& model, const Performance& performance, const AnimateOptions& options,
              const std::vector<TakeFrame>& finished, const FrameCallback& on_frame);
 

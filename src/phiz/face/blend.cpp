@@ -19,11 +19,23 @@ namespace {
 constexpr double least_weight = 1e-5;
 constexpr std::ptrdiff_t entry_size = blend_values * blend_width;
 static_assert(blend_width == ElementBlocks<float>::width);
+constexpr float largest_entry = 32767;
 
 Matrix3d symmetric(const Eigen::Matrix<double, 1, 6>& s) {
   Matrix3d S;
   S << s[0], s[3], s[4], s[3], s[1], s[5], s[4], s[5], s[2];
   return S;
+}
+
+/// What is blended of every tet of a shape.
+Eigen::Array<float, Eigen::Dynamic, blend_values> blended_values(const VolumetricShape& shape) {
+  Eigen::Array<float, Eigen::Dynamic, blend_values> values(shape.tets.size(), blend_values);
+  for (Eigen::Index i = 0; i < shape.tets.size(); ++i) {
+    const double det = (Matrix3d::Identity() + symmetric(shape.stretch.row(i).cast<double>())).determinant();
+    values.row(i) << shape.log_rotation.row(i).array(), shape.stretch.row(i).array(),
+        static_cast<float>(excused_volume(det) / 3);
+  }
+  return values;
 }
 
 }  // namespace
@@ -66,9 +78,11 @@ Matrix3d linear_blend(const MatrixX3d& log_rotations, const Eigen::Matrix<double
 struct TargetBlender::Table {
   Eigen::Index shapes = 0;
   std::ptrdiff_t blocks = 0;
-  std::vector<std::ptrdiff_t> start;          ///< first entry of each block
-  std::vector<int> shape;                     ///< per entry
-  hwy::AlignedFreeUniquePtr<float[]> values;  ///< blend_values x blend_width per entry
+  std::vector<std::ptrdiff_t> start;  ///< first entry of each block
+  std::vector<int> shape;             ///< per entry
+  /// blend_values x blend_width per entry: in 16 bits, since the blend waits for memory; a strain is good to 1e-4.
+  hwy::AlignedFreeUniquePtr<std::int16_t[]> values;
+  Eigen::Array<float, blend_values, Eigen::Dynamic> unit;  ///< of one step of the values, per shape
 };
 
 TargetBlender::~TargetBlender() = default;
@@ -102,21 +116,24 @@ TargetBlender::TargetBlender(const FaceModel& model, const VectorXi& soft, const
   for (std::size_t b = 0; b < static_cast<std::size_t>(table.blocks); ++b) table.start[b + 1] += table.start[b];
   const std::ptrdiff_t entries = table.start.back();
   table.shape.resize(static_cast<std::size_t>(entries));
-  table.values = hwy::AllocateAligned<float>(static_cast<std::size_t>(std::max<std::ptrdiff_t>(entries, 1) * entry_size));
-  std::fill_n(table.values.get(), entries * entry_size, 0.0F);
+  table.values =
+      hwy::AllocateAligned<std::int16_t>(static_cast<std::size_t>(std::max<std::ptrdiff_t>(entries, 1) * entry_size));
+  std::fill_n(table.values.get(), entries * entry_size, std::int16_t{0});
+  table.unit.setZero(blend_values, table.shapes);
   std::vector<std::ptrdiff_t> next(table.start.begin(), table.start.end() - 1);
   for (std::size_t m = 0; m < model.shapes.size(); ++m) {
     const VolumetricShape& shape = model.shapes[m];
+    const Eigen::Array<float, Eigen::Dynamic, blend_values> all = blended_values(shape);
+    auto unit = table.unit.col(static_cast<Eigen::Index>(m));
+    if (all.rows() > 0) unit = all.abs().colwise().maxCoeff().transpose() / largest_entry;
     for (Eigen::Index i = 0; i < shape.tets.size(); ++i) {
       const std::ptrdiff_t s = slot_of[static_cast<std::size_t>(shape.tets[i])];
       if (s < 0) continue;
       const std::ptrdiff_t entry = next[static_cast<std::size_t>(s / blend_width)];
       table.shape[static_cast<std::size_t>(entry)] = static_cast<int>(m);
-      float* values = table.values.get() + entry * entry_size + s % blend_width;
-      for (int k = 0; k < 3; ++k) values[k * blend_width] = shape.log_rotation(i, k);
-      for (int k = 0; k < 6; ++k) values[(3 + k) * blend_width] = shape.stretch(i, k);
-      const double det = (Matrix3d::Identity() + symmetric(shape.stretch.row(i).cast<double>())).determinant();
-      values[9 * blend_width] = static_cast<float>(excused_volume(det) / 3);
+      std::int16_t* values = table.values.get() + entry * entry_size + s % blend_width;
+      for (Eigen::Index k = 0; k < blend_values; ++k)
+        if (unit[k] > 0) values[k * blend_width] = static_cast<std::int16_t>(std::lround(all(i, k) / unit[k]));
     }
     for (std::size_t b = 0; b < touched[m].size(); ++b) next[b] += touched[m][b];
   }
@@ -126,16 +143,16 @@ void TargetBlender::blend(const VectorXd& weights, ElementBlocks<float>& element
   const Table& table = *table_;
   if (weights.size() != table.shapes || !weights.allFinite())
     reject("blend", "needs one finite weight per volumetric shape");
-  std::vector<float> w(static_cast<std::size_t>(weights.size()));
+  Eigen::Array<float, blend_values, Eigen::Dynamic> scaled = table.unit;
   for (Eigen::Index m = 0; m < weights.size(); ++m)
-    w[static_cast<std::size_t>(m)] = std::abs(weights[m]) < least_weight ? 0.0F : static_cast<float>(weights[m]);
+    scaled.col(m) *= std::abs(weights[m]) < least_weight ? 0.0F : static_cast<float>(weights[m]);
   parallel_for(
       table.blocks,
       [&](std::ptrdiff_t b) {
         const std::ptrdiff_t first = table.start[static_cast<std::size_t>(b)];
         const std::ptrdiff_t slot = b * blend_width;
         blend_block(table.values.get() + first * entry_size, table.shape.data() + first,
-                    table.start[static_cast<std::size_t>(b) + 1] - first, w.data(),
+                    table.start[static_cast<std::size_t>(b) + 1] - first, scaled.data(),
                     elements.target.get() + 9 * slot, elements.stretch.get() + 6 * slot, elements.goal.get() + slot);
       },
       32);

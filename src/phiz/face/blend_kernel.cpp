@@ -8,25 +8,32 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <algorithm>
+
 HWY_BEFORE_NAMESPACE();
 namespace phiz {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-void BlendBlock(const float* entries, const int* shape, std::ptrdiff_t count, const float* weights, float* target,
-                float* stretch, float* goal) {
+void BlendBlock(const std::int16_t* entries, const int* shape, std::ptrdiff_t count, const float* scaled_weights,
+                float* target, float* stretch, float* goal) {
   const hn::CappedTag<float, blend_width> d;
+  const hn::RebindToSigned<decltype(d)> d_int;
+  const hn::Rebind<std::int16_t, decltype(d)> d_short;
   constexpr auto width = static_cast<std::size_t>(blend_width);
   const auto one = hn::Set(d, 1.0F);
   for (std::size_t l = 0; l < width; l += hn::Lanes(d)) {
     hn::Vec<decltype(d)> v[blend_values];
     for (auto& part : v) part = hn::Zero(d);
     for (std::ptrdiff_t e = 0; e < count; ++e) {
-      if (weights[shape[e]] == 0) continue;
-      const auto w = hn::Set(d, weights[shape[e]]);
-      const float* entry = entries + e * blend_values * blend_width + l;
-      for (std::size_t k = 0; k < blend_values; ++k) v[k] = hn::MulAdd(w, hn::Load(d, entry + k * width), v[k]);
+      const float* w = scaled_weights + shape[e] * blend_values;
+      if (std::all_of(w, w + blend_values, [](float value) { return value == 0; })) continue;
+      const std::int16_t* entry = entries + e * blend_values * blend_width + l;
+      for (std::size_t k = 0; k < blend_values; ++k) {
+        const auto value = hn::ConvertTo(d, hn::PromoteTo(d_int, hn::Load(d_short, entry + k * width)));
+        v[k] = hn::MulAdd(hn::Set(d, w[k]), value, v[k]);
+      }
     }
     // Quaternion of an eighth of the turn by series, normalised, then squared twice.
     const auto eighth = hn::Set(d, 0.125F);
@@ -78,8 +85,7 @@ void BlendBlock(const float* entries, const int* shape, std::ptrdiff_t count, co
     const auto bound = hn::Set(d, 0.25F);
     const auto g = hn::Max(hn::Neg(bound), hn::Min(bound, v[9]));
     auto power = one;
-    for (int k = 6; k >= 1; --k)
-      power = hn::MulAdd(hn::Mul(power, g), hn::Set(d, 1.0F / static_cast<float>(k)), one);
+    for (int k = 6; k >= 1; --k) power = hn::MulAdd(hn::Mul(power, g), hn::Set(d, 1.0F / static_cast<float>(k)), one);
     hn::Store(power, d, goal + l);
   }
 }
@@ -93,9 +99,9 @@ namespace phiz {
 
 HWY_EXPORT(BlendBlock);
 
-void blend_block(const float* entries, const int* shape, std::ptrdiff_t count, const float* weights, float* target,
-                 float* stretch, float* goal) {
-  HWY_DYNAMIC_DISPATCH(BlendBlock)(entries, shape, count, weights, target, stretch, goal);
+void blend_block(const std::int16_t* entries, const int* shape, std::ptrdiff_t count, const float* scaled_weights,
+                 float* target, float* stretch, float* goal) {
+  HWY_DYNAMIC_DISPATCH(BlendBlock)(entries, shape, count, scaled_weights, target, stretch, goal);
 }
 
 }  // namespace phiz

@@ -14,16 +14,16 @@ class DrawnSkin {
  public:
   explicit DrawnSkin(const HeadTemplate& head);
 
-  /// Positions of the drawn skin for positions of the volume (both in the head frame, metres). Where the lips would fold
-  /// over themselves (a triangle or two in the corners of the mouth) they are evened out.
+  /// Positions of the drawn skin for positions of the volume (both in the head frame, metres). Where the lips would
+  /// fold over themselves (a triangle or two in the corners of the mouth) they are evened out.
   MatrixX3d at(const MatrixX3d& volume) const;
 
  private:
-  MatrixX3d rest_;              ///< of the drawn skin
-  VectorXi simulated_;          ///< rows of the volume
-  MatrixX3d simulated_rest_;    ///< positions of those
-  std::vector<int> start_;      ///< of each drawn vertex in `source_` and `weight_`
-  std::vector<int> source_;     ///< places in `simulated_`
+  MatrixX3d rest_;            ///< of the drawn skin
+  VectorXi simulated_;        ///< rows of the volume
+  MatrixX3d simulated_rest_;  ///< positions of those
+  std::vector<int> start_;    ///< of each drawn vertex in `source_` and `weight_`
+  std::vector<int> source_;   ///< places in `simulated_`
   std::vector<float> weight_;
   FoldMender folds_;
 };

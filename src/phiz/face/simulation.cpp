@@ -251,6 +251,7 @@ void Simulation::set_forces(const MatrixX3d& forces) {
 
 void Simulation::forget() {
   parts_->solver.forget();
+  if (parts_->contacts) parts_->contacts->scene.forget();
 }
 
 SimulationState Simulation::state() const {
@@ -265,7 +266,7 @@ void Simulation::restore(const SimulationState& state) {
                                    " positions instead of " + std::to_string(p.x.rows()));
   if (p.options.dynamic && (state.velocity.rows() != p.x.rows() || !state.velocity.allFinite()))
     reject("simulation state", "has no velocities", "it comes from a static run; start anew");
-  p.solver.forget();
+  forget();
   p.x = as_stored(state.positions);
   if (p.options.dynamic) p.velocity = as_stored(state.velocity);
   p.weights = state.weights;
