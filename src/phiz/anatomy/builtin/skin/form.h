@@ -31,7 +31,9 @@ struct SkinForm {
 
 /// The sheet: brow, cheeks, nose, chin, scalp and neck of the mean head.
 void place_sheet(SkinForm& form);
-/// Lays the scalp of the sheet on the vault of the skull, and fills the crown.
+/// The back of the head and of the neck, behind the ears.
+void place_back(SkinForm& form);
+/// Lays the scalp before and above the ears on the vault of the skull, and fills the crown.
 void place_vault(SkinForm& form);
 /// The neck, with its cut face at the foot.
 void place_neck(SkinForm& form);

@@ -83,22 +83,23 @@ SkinRegions skin_regions() {
     s.sheet(0, 4, 19, 20);
   });
   both("scalp", [&](RegionSet& s) {
-    s.sheet(0, 16, 25, 26);
-    s.sheet(11, 16, 22, 24);
-    s.sheet(13, 16, 11, 21);
-    s.sheet(14, 16, 8, 10);
+    s.sheet(0, 18, 25, 26);
+    s.sheet(11, 18, 22, 24);
+    s.sheet(13, 18, 11, 21);
+    s.sheet(14, 18, 8, 10);
     for (int u = 0; u <= 4; ++u)
-      for (int v = 0; v <= 8; ++v) s.add(t.crown(u, v));
+      for (int v = 0; v <= SkinTopology::crown_rows; ++v) s.add(t.crown(u, v));
   });
   both("forehead", [](RegionSet& s) { s.sheet(0, 10, 23, 25); });
   both("chin", [](RegionSet& s) { s.sheet(0, 5, 5, 7); });
   both("neck", [](RegionSet& s) {
-    s.sheet(0, 16, 0, 4);
-    s.sheet(13, 16, 5, 7);
+    s.sheet(0, 18, 0, 4);
+    s.sheet(13, 18, 5, 7);
   });
   both("neckCap", [&](RegionSet& s) {
-    for (int u = 0; u <= 6; ++u)
-      for (int v = 0; v <= 4; ++v) s.add(t.foot(u, v));
+    s.sheet(0, 18, 0, 0);
+    for (int u = 0; u <= SkinTopology::foot_columns; ++u)
+      for (int v = 0; v <= SkinTopology::foot_rows; ++v) s.add(t.foot(u, v));
   });
   both("jawLine", [](RegionSet& s) { s.sheet(0, 12, 5, 5); });
   pair("UpperLid", [](RegionSet& s) { s.eye(3, 6, 0, 8); });
@@ -202,7 +203,7 @@ std::vector<Landmark> skin_landmarks() {
   std::sort(landmarks.begin(), landmarks.end(),
             [](const Landmark& a, const Landmark& b) { return std::stoi(a.name) < std::stoi(b.name); });
 
-  add("vertex", t.crown(0, 4));
+  add("vertex", t.crown(0, SkinTopology::crown_rows / 2));
   add("opisthocranion", t.sheet(16, 13));
   add("trichion", t.sheet(0, 25));
   add("glabella", t.sheet(0, 23));

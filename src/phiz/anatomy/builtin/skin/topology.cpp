@@ -156,8 +156,11 @@ SkinTopology::SkinTopology() {
     crown_arc.push_back(sheet_[i][rows]);
     foot_arc.push_back(sheet_[i][0]);
   }
-  crown_ = close_half(crown_arc, 4, false, SkinIsland::outside);
-  foot_ = close_half(foot_arc, 6, true, SkinIsland::foot);
+  crown_ = close_half(crown_arc, crown_columns, false, SkinIsland::outside);
+  for (int i = 0; i <= columns; ++i) foot_rim_.push_back(add(i == 0 || i == columns));
+  for (int i = 0; i < columns; ++i)
+    add_face(foot_arc[i], foot_rim_[i], foot_rim_[i + 1], foot_arc[i + 1], SkinIsland::foot);
+  foot_ = close_half(foot_rim_, foot_columns, true, SkinIsland::foot);
   throat_ = close_half(mouth_[mouth_rings], 7, true, SkinIsland::mouth);
   socket_ = close_ring(eye_[eye_rings], 4, 0, 2, SkinIsland::left_socket);
   nostril_end_ = close_ring(nostril_[nostril_rings], 2, 0, 0, SkinIsland::left_nostril)[1][1];

@@ -4,7 +4,7 @@
 ///
 /// The left half (x >= 0) is laid out on integer coordinates, the right half mirrors it.
 ///
-///   sheet(i, j)       i: 0 front midline .. 6 nasolabial fold .. 10 outer eye .. 12 before the ear .. 16 back midline;
+///   sheet(i, j)       i: 0 front midline .. 6 nasolabial fold .. 10 outer eye .. 12 before the ear .. 18 back midline;
 ///                     j: 0 foot of the neck .. 5 jaw line .. 7 under the lip .. 11 under the nose .. 18 under the eye
 ///                     .. 22 brow
 ///                     .. 26 round the crown. Behind the ear (i >= 14) rows 12 and 13 are followed by row 20.
@@ -15,9 +15,11 @@
 ///   the
 ///                     eyeball; c: 0 inner canthus, 1..7 upper lid, 8 outer canthus, 9..15 lower lid
 ///   nostril(ring, c)  ring 0 the rim .. 3 deep inside; c: 0 behind the columella, 1, 2 front .. 4 .. 6 outer back, 7
-///   sill ear(ring, c)      ring 0 on the head, 2 rim of the helix .. 6 edge of the concha; c: 0 below the lobe's
-///   front,
-///                     3 tragus, 8 top, 11 back, 15 lobe
+///                     sill
+///   ear(ring, c)      ring 0 on the head, 1, 2 back of the auricle, 3 rim of the helix, 4 its front edge, 5 scapha,
+///                     6 antihelix .. 8 floor of the concha; c: 0 below the lobe's front, 3 tragus, 8 top, 11 back,
+///                     15 lobe
+///   foot_rim(i)       inside the cut of the neck, along sheet(i, 0)
 ///   crown, foot, throat (u, v), socket, nostril_end, concha (u, v): the grids that close the holes
 #pragma once
 
@@ -41,8 +43,10 @@ enum class SkinIsland : int {
 
 class SkinTopology {
  public:
-  static constexpr int columns = 16, rows = 26, mouth_rings = 11, eye_rings = 9, nostril_rings = 3, ear_rings = 6;
+  static constexpr int columns = 18, rows = 26, mouth_rings = 11, eye_rings = 9, nostril_rings = 3, ear_rings = 8;
   static constexpr int mouth_columns = 16, eye_columns = 16, nostril_columns = 8, ear_columns = 16;
+  static constexpr int crown_columns = 4, crown_rows = columns - 2 * crown_columns;
+  static constexpr int foot_columns = 6, foot_rows = columns - 2 * foot_columns;
 
   SkinTopology();
 
@@ -51,8 +55,9 @@ class SkinTopology {
   int eye(int ring, int c) const { return eye_[ring][(c + eye_columns) % eye_columns]; }
   int nostril(int ring, int c) const { return nostril_[ring][(c + nostril_columns) % nostril_columns]; }
   int ear(int ring, int c) const { return ear_[ring][(c + ear_columns) % ear_columns]; }
-  int crown(int u, int v) const { return crown_[u][v]; }    ///< u: 0 midline .. 4, v: 0 front .. 8 back
-  int foot(int u, int v) const { return foot_[u][v]; }      ///< u: 0 midline .. 6, v: 0 front .. 4 back
+  int crown(int u, int v) const { return crown_[u][v]; }    ///< u: 0 midline .. 4, v: 0 front .. 10 back
+  int foot_rim(int i) const { return foot_rim_[i]; }
+  int foot(int u, int v) const { return foot_[u][v]; }      ///< u: 0 midline .. 6, v: 0 front .. 6 back; rim: foot_rim
   int throat(int u, int v) const { return throat_[u][v]; }  ///< u: 0 midline .. 7, v: 0 upper .. 2 lower
   int socket(int u, int v) const { return socket_[u][v]; }  ///< 0..4 x 0..4 behind the eyeball, u outwards, v up
   int nostril_end() const { return nostril_end_; }
@@ -76,6 +81,7 @@ class SkinTopology {
   void mirror_right();
 
   Grid sheet_, mouth_, eye_, nostril_, ear_, crown_, foot_, throat_, socket_, concha_;
+  std::vector<int> foot_rim_;
   int nostril_end_ = -1;
   int left_count_ = 0;
   std::vector<char> midline_;

@@ -42,7 +42,7 @@ std::vector<char> cut_vertices() {
   std::vector<char> cut(t.vertex_count(), 0);
   for (int j = 0; j <= SkinTopology::rows; ++j)
     if (t.sheet(SkinTopology::columns, j) >= 0) cut[t.sheet(SkinTopology::columns, j)] = 1;
-  for (int v = 5; v <= 8; ++v) cut[t.crown(0, v)] = 1;
+  for (int v = SkinTopology::crown_rows / 2 + 1; v <= SkinTopology::crown_rows; ++v) cut[t.crown(0, v)] = 1;
   return cut;
 }
 
@@ -103,7 +103,7 @@ double outside_angle(int cage_vertex, bool right_bank) {
   std::vector<int> bank;
   for (int j = 0; j <= SkinTopology::rows; ++j)
     if (t.sheet(SkinTopology::columns, j) >= 0) bank.push_back(t.sheet(SkinTopology::columns, j));
-  for (int v = 7; v >= 4; --v) bank.push_back(t.crown(0, v));
+  for (int v = SkinTopology::crown_rows - 1; v >= SkinTopology::crown_rows / 2; --v) bank.push_back(t.crown(0, v));
   const auto it = std::find(bank.begin(), bank.end(), cage_vertex);
   if (it == bank.end()) fail("the texture seam of the skin does not match its boundary");
   const double share = static_cast<double>(it - bank.begin()) / static_cast<double>(bank.size() - 1);
