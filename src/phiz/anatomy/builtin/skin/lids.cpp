@@ -12,8 +12,8 @@ constexpr int n = SkinTopology::eye_columns;
 /// The inner edge of the lid margin about the centre of the mean eye (millimetres, x to the temple for the left eye),
 /// from the inner canthus over the upper lid to the outer canthus and back along the lower lid. z follows the eyeball
 /// where it can.
-constexpr double margin_x[n] = {-14.6, -11.6, -8.4, -4.6, -0.4, 4,    8,    11.2,
-                                13.2,  11,    7.6,  3.6,  -0.6, -4.6, -8.4, -11.6};
+constexpr double margin_x[n] = {-14.6, -11.6, -8.4, -4.6, -0.4, 4,    8,    11.3,
+                                13.6,  11,    7.6,  3.6,  -0.6, -4.6, -8.4, -11.6};
 constexpr double margin_y[n] = {-1.6, 0.6,  2.3,  3.5,  3.9, 3.7,  2.75, 1.4,
                                 0.4,  -1.7, -3.8, -5.1, -5.6, -5.2, -4.1, -2.8};
 constexpr double margin_z[n] = {6.2, 6.8, 0, 0, 0, 0, 0, 4.4, 3.2, 4, 0, 0, 0, 0, 0, 6.6};  // least depth
@@ -23,7 +23,9 @@ constexpr double back_clearance = 0.9;  // where nobody sees it
 constexpr double caruncle = 0.5;        // how far it stands out from the eyeball
 constexpr double margin_width = 1.7;
 /// How far the skin between outer canthus and temple stands out from the straight way, millimetres.
-constexpr double temple_round[n] = {0, 0, 0, 0, 0, 0, 0.6, 1.6, 2, 1.8, 0.8, 0, 0, 0, 0, 0};
+constexpr double temple_round[n] = {0, 0, 0, 0, 0, 0.3, 1.4, 1.9, 2, 1.8, 0.8, 0, 0, 0, 0, 0};
+/// How closely the lids follow the ball: less towards the canthi.
+constexpr double follow[n] = {0, 0.4, 0.75, 0.95, 1, 0.9, 0.5, 0.15, 0, 0.15, 0.5, 0.9, 1, 1, 0.75, 0.4};
 
 }  // namespace
 
@@ -58,12 +60,12 @@ void place_lids(SkinForm& form, const Proportions& proportions, const IdentityPa
     form.place(topology.eye(5, c), centre + outer_edge, 1e3);
     // Across the lid to the rim on the sheet: fraction of the way and distance from the eyeball's surface.
     const Vector3d rim = form.at(topology.eye(0, c)) - centre;
-    const double fraction[5] = {1, upper ? 0.83 : 0.88, upper ? 0.64 : 0.72, upper ? 0.64 : 0.44, upper ? 0.24 : 0.18};
-    const double height[5] = {0, upper ? 9.2 : 5.9, upper ? 6.8 : 4.9, upper ? 2.4 : 3.4, upper ? 2.7 : 2.6};
-    const double hug[5] = {0, upper ? 0.3 : 0.3, upper ? 1 : 0.8, 1, 1};  // how closely the lid follows the ball
+    const double fraction[5] = {1, upper ? 0.64 : 0.88, upper ? 0.48 : 0.72, upper ? 0.44 : 0.44, upper ? 0.2 : 0.18};
+    const double height[5] = {0, upper ? 8.8 : 5.9, upper ? 5.5 : 4.9, upper ? 3.2 : 3.4, upper ? 2.8 : 2.6};
+    const double hug[5] = {0, upper ? 1 : 0.3, upper ? 1 : 0.8, 1, 1};
     for (int ring = 1; ring <= 4; ++ring) {
       Vector3d p = outer_edge + fraction[ring] * (rim - outer_edge);
-      p += lid * hug[ring] * ((radius + height[ring]) * p.normalized() - p);
+      p += follow[c] * hug[ring] * ((radius + height[ring]) * p.normalized() - p);
       p += temple_round[c] * 4 * fraction[ring] * (1 - fraction[ring]) * p.normalized();
       const double r_min = radius + 2.0;
       if (p.norm() < r_min) p *= r_min / p.norm();

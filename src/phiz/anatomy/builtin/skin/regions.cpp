@@ -204,7 +204,7 @@ std::vector<Landmark> skin_landmarks() {
             [](const Landmark& a, const Landmark& b) { return std::stoi(a.name) < std::stoi(b.name); });
 
   add("vertex", t.crown(0, SkinTopology::crown_rows / 2));
-  add("opisthocranion", t.sheet(16, 13));
+  add("opisthocranion", t.sheet(SkinTopology::columns, 13));
   add("trichion", t.sheet(0, 25));
   add("glabella", t.sheet(0, 23));
   add("nasion", t.sheet(0, 21));
@@ -225,7 +225,7 @@ std::vector<Landmark> skin_landmarks() {
   sides("Cheilion", t.mouth(5, 8));
   sides("Zygion", t.sheet(11, 16));
   sides("Gonion", t.sheet(11, 5));
-  sides("Tragion", t.ear(0, 4));
+  sides("Tragion", t.ear(2, 4));
   sides("Euryon", t.sheet(12, 23));
   return landmarks;
 }
