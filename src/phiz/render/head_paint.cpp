@@ -21,7 +21,7 @@ struct Tint {
 const std::vector<Tint>& tints() {
   static const std::vector<Tint> list = {
       {"scalp", {0.86, 0.88, 0.91}, 0.022},         {"nose", {1.03, 0.90, 0.88}, 0.006},
-      {"leftCheek", {1.04, 0.90, 0.87}, 0.016},     {"rightCheek", {1.04, 0.90, 0.87}, 0.016},
+      {"leftCheek", {1.02, 0.93, 0.91}, 0.016},     {"rightCheek", {1.02, 0.93, 0.91}, 0.016},
       {"chin", {1.0, 0.95, 0.94}, 0.010},           {"leftEar", {1.04, 0.86, 0.84}, 0.008},
       {"rightEar", {1.04, 0.86, 0.84}, 0.008},      {"leftUpperLid", {0.97, 0.88, 0.88}, 0.004},
       {"rightUpperLid", {0.97, 0.88, 0.88}, 0.004}, {"leftLowerLid", {0.97, 0.86, 0.88}, 0.004},
@@ -31,7 +31,7 @@ const std::vector<Tint>& tints() {
       {"oralRoof", {0.55, 0.28, 0.30}, 0.001},      {"oralFloor", {0.55, 0.28, 0.30}, 0.001},
       {"leftSocket", {0.92, 0.60, 0.58}, 0.0006},   {"rightSocket", {0.92, 0.60, 0.58}, 0.0006},
       {"leftNostril", {0.75, 0.55, 0.52}, 0.002},   {"rightNostril", {0.75, 0.55, 0.52}, 0.002},
-      {"neckCap", {0.9, 0.6, 0.55}, 0.001},         {"forehead", {1.0, 0.98, 0.97}, 0.012},
+      {"neckCap", {0.80, 0.76, 0.74}, 0.001},         {"forehead", {1.0, 0.98, 0.97}, 0.012},
       {"neck", {0.98, 0.96, 0.95}, 0.012},
   };
   return list;
@@ -119,50 +119,105 @@ MatrixX3d paint_skin(const TriangleMesh& skin, const std::map<std::string, Vecto
   return colour;
 }
 
-std::function<Vector3d(const Vector3d&)> brow_pattern(const HeadTemplate& head) {
-  struct Brow {
-    std::vector<Vector3d> line;  // from the nose outwards
-    double length = 0;
+namespace {
+
+/// Where a point lies beside a line: how far off, and where along it (0 to 1).
+struct Beside {
+  double distance = 1e9, along = 0;
+  Vector3d offset = Vector3d::Zero();
+};
+
+/// A line on the face, in order.
+struct FaceLine {
+  std::vector<Vector3d> points;
+  double length = 0;
+  Vector3d middle = Vector3d::Zero();
+
+  explicit FaceLine(std::vector<Vector3d> line) : points(std::move(line)) {
+    for (std::size_t k = 0; k + 1 < points.size(); ++k) length += (points[k + 1] - points[k]).norm();
+    for (const Vector3d& p : points) middle += p / static_cast<double>(points.size());
+  }
+  bool far_from(const Vector3d& p) const { return (p - middle).squaredNorm() > length * length; }
+  Beside beside(const Vector3d& p) const {
+    Beside nearest;
+    double before = 0;
+    for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+      const Vector3d ab = points[k + 1] - points[k];
+      const double l = ab.norm(), t = std::clamp((p - points[k]).dot(ab) / std::max(l * l, 1e-18), 0.0, 1.0);
+      const Vector3d off = p - points[k] - t * ab;
+      if (off.norm() < nearest.distance) nearest = {off.norm(), (before + t * l) / length, off};
+      before += l;
+    }
+    return nearest;
+  }
+};
+
+/// How dense the hairs of a brow are at p: widest and loose near the nose, a thin tail; the hairs lean outwards, those
+/// at the inner end stand up.
+double brow_density(const FaceLine& brow, const Vector3d& p) {
+  const Beside at = brow.beside(p);
+  const double half = brow.length * (0.105 - 0.080 * at.along) * smooth_step(-0.25, 0.25, at.along);
+  const double across = at.offset.y() >= 0 ? at.distance : -at.distance;
+  const double lean = 0.3 + 2.2 * smooth_step(0.0, 0.4, at.along);
+  const double stroke = at.along * brow.length, over = across / brow.length;
+  // Hairs: thin across their direction, long along it, in two layers that lean a little differently.
+  const auto hairs = [&](double slope, int layer) {
+    const double side = (stroke - slope * across) * 2300, length = over * 9 + 0.3 * line_noise(side, layer);
+    const double f = length - std::floor(length), s = f * f * (3 - 2 * f);
+    const int row = layer + static_cast<int>(std::floor(length)) + 100;
+    return (1 - s) * line_noise(side, row) + s * line_noise(side, row + 1);
   };
-  std::vector<Brow> brows(2);
+  const double hair = 0.55 * hairs(lean, 0) + 0.45 * hairs(0.75 * lean, 500);
+  const double edge = at.distance / std::max(half, 1e-6);
+  const double body = 1 - smooth_step(0.25, 1.35, edge + 0.9 * (hair - 0.5));
+  const double ends = smooth_step(-0.02, 0.22, at.along) * (1 - 0.85 * smooth_step(0.72, 1.0, at.along));
+  return body * (0.30 + 0.70 * ends) * (at.along < 1 ? 1 : 0.4) * (0.35 + 0.8 * hair);
+}
+
+/// The roots of the lashes darken the edge of a lid; most in the outer half.
+double lash_density(const FaceLine& margin, const Vector3d& p, bool upper) {
+  const Beside at = margin.beside(p);
+  const double reach = (upper ? 0.00075 : 0.00050) * (0.6 + 0.4 * line_noise(at.along * margin.length * 2600, 7));
+  const double ends = smooth_step(0.02, 0.25, at.along) * (1 - smooth_step(0.96, 1.0, at.along));
+  return (upper ? 0.85 : 0.40) * ends * (1 - smooth_step(0.2 * reach, reach, at.distance));
+}
+
+}  // namespace
+
+std::function<Vector3d(const Vector3d&)> hair_pattern(const HeadTemplate& head) {
+  std::vector<FaceLine> brows, upper_margins, lower_margins;
   for (int side = 0; side < 2; ++side) {
-    Brow& brow = brows[side];
+    std::vector<Vector3d> line;
     for (int k = 0; k < 5; ++k) {
       const std::string name = std::to_string(side == 0 ? 21 - k : 22 + k);
       for (const Landmark& l : head.landmarks)
         if (l.name == name && l.skin_vertex >= 0 && l.skin_vertex < head.skin.V.rows())
-          brow.line.emplace_back(head.skin.V.row(l.skin_vertex));
+          line.emplace_back(head.skin.V.row(l.skin_vertex));
     }
-    if (brow.line.size() != 5) return {};
-    for (int k = 0; k < 4; ++k) brow.length += (brow.line[k + 1] - brow.line[k]).norm();
-    if (!(brow.length > 0)) return {};
+    if (line.size() == 5) brows.emplace_back(line);
+    for (const bool upper : {true, false}) {
+      const std::string name =
+          std::string("loop:") + (side == 0 ? "right" : "left") + (upper ? "Upper" : "Lower") + "LidMargin";
+      const auto loop = head.skin_regions.find(name);
+      if (loop == head.skin_regions.end()) continue;
+      std::vector<Vector3d> edge;
+      for (const int v : loop->second)
+        if (v >= 0 && v < head.skin.V.rows()) edge.emplace_back(head.skin.V.row(v));
+      if (edge.size() > 1) (upper ? upper_margins : lower_margins).emplace_back(edge);
+    }
   }
-  return [brows](const Vector3d& p) -> Vector3d {
+  const auto too_short = [](const FaceLine& line) { return !(line.length > 0); };
+  for (std::vector<FaceLine>* lines : {&brows, &upper_margins, &lower_margins})
+    lines->erase(std::remove_if(lines->begin(), lines->end(), too_short), lines->end());
+  if (brows.empty() && upper_margins.empty()) return {};
+  return [brows, upper_margins, lower_margins](const Vector3d& p) -> Vector3d {
     double density = 0;
-    for (const Brow& brow : brows) {
-      const double reach = 0.35 * brow.length;
-      if ((p - brow.line[2]).squaredNorm() > (reach + 0.5 * brow.length) * (reach + 0.5 * brow.length)) continue;
-      double nearest = 1e9, along = 0, across = 0, before = 0;
-      for (int k = 0; k < 4; ++k) {
-        const Vector3d ab = brow.line[k + 1] - brow.line[k];
-        const double l = ab.norm(), t = std::clamp((p - brow.line[k]).dot(ab) / (l * l), 0.0, 1.0);
-        const Vector3d off = p - brow.line[k] - t * ab;
-        if (off.norm() < nearest) {
-          nearest = off.norm();
-          along = (before + t * l) / brow.length;
-          across = off.y() >= 0 ? nearest : -nearest;
-        }
-        before += l;
-      }
-      // Widest near the nose, a thin tail; hairs lean outwards, those at the inner end stand up.
-      const double half = brow.length * (0.115 - 0.075 * along) * smooth_step(-0.05, 0.12, along + 0.05);
-      const double edge = std::clamp(nearest / std::max(half, 1e-6), 0.0, 2.0);
-      const double lean = 0.25 + 1.9 * smooth_step(0.0, 0.45, along);
-      const double stroke = along * brow.length + across * -lean;
-      const int row = static_cast<int>(std::floor(across / brow.length * 24 + 100));
-      const double hair = 0.65 * line_noise(stroke * 2600, row) + 0.35 * line_noise(stroke * 1100, 3);
-      density = std::max(density, (1 - smooth_step(0.45, 1.25, edge + 0.55 * (hair - 0.5))) * (0.45 + 0.75 * hair));
-    }
+    for (const FaceLine& brow : brows)
+      if (!brow.far_from(p)) density = std::max(density, brow_density(brow, p));
+    for (const FaceLine& margin : upper_margins)
+      if (!margin.far_from(p)) density = std::max(density, lash_density(margin, p, true));
+    for (const FaceLine& margin : lower_margins)
+      if (!margin.far_from(p)) density = std::max(density, lash_density(margin, p, false));
     density = std::clamp(density, 0.0, 0.9);
     return Vector3d::Ones() + density * (Vector3d(0.14, 0.11, 0.10) - Vector3d::Ones());
   };

@@ -144,7 +144,7 @@ Surface skin_surface(const PosedHead& posed, const HeadViewOptions& options) {
       s.material = skin_material();
       if (posed.head != nullptr) {
         s.colour = paint_skin(*posed.skin, posed.head->skin_regions);
-        s.colour_at = brow_pattern(*posed.head);
+        s.colour_at = hair_pattern(*posed.head);
       }
       break;
     case HeadStyle::heat:

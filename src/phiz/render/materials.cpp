@@ -16,7 +16,7 @@ Material skin_material() {
   m.albedo = {0.645, 0.395, 0.290};
   m.roughness = 0.46;
   m.specular = 0.030;
-  m.scatter = {0.42, 0.16, 0.09};
+  m.scatter = {0.34, 0.15, 0.09};
   m.grain = 1;
   return m;
 }
