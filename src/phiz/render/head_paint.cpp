@@ -25,8 +25,8 @@ const std::vector<Tint>& tints() {
       {"chin", {1.0, 0.95, 0.94}, 0.010},           {"leftEar", {1.04, 0.86, 0.84}, 0.008},
       {"rightEar", {1.04, 0.86, 0.84}, 0.008},      {"leftUpperLid", {0.97, 0.88, 0.88}, 0.004},
       {"rightUpperLid", {0.97, 0.88, 0.88}, 0.004}, {"leftLowerLid", {0.97, 0.86, 0.88}, 0.004},
-      {"rightLowerLid", {0.97, 0.86, 0.88}, 0.004}, {"upperLip", {0.86, 0.56, 0.60}, 0.0011},
-      {"lowerLip", {0.88, 0.58, 0.61}, 0.0011},     {"upperLipInner", {0.80, 0.46, 0.52}, 0.001},
+      {"rightLowerLid", {0.97, 0.86, 0.88}, 0.004}, {"upperLip", {0.90, 0.63, 0.65}, 0.0015},
+      {"lowerLip", {0.92, 0.65, 0.66}, 0.0015},     {"upperLipInner", {0.80, 0.46, 0.52}, 0.001},
       {"lowerLipInner", {0.80, 0.46, 0.52}, 0.001}, {"mouthBag", {0.62, 0.30, 0.33}, 0.001},
       {"oralRoof", {0.55, 0.28, 0.30}, 0.001},      {"oralFloor", {0.55, 0.28, 0.30}, 0.001},
       {"leftSocket", {0.92, 0.60, 0.58}, 0.0006},   {"rightSocket", {0.92, 0.60, 0.58}, 0.0006},
@@ -169,9 +169,9 @@ double brow_density(const FaceLine& brow, const Vector3d& p) {
   };
   const double hair = 0.55 * hairs(lean, 0) + 0.45 * hairs(0.75 * lean, 500);
   const double edge = at.distance / std::max(half, 1e-6);
-  const double body = 1 - smooth_step(0.25, 1.35, edge + 0.9 * (hair - 0.5));
-  const double ends = smooth_step(-0.02, 0.22, at.along) * (1 - 0.85 * smooth_step(0.72, 1.0, at.along));
-  return body * (0.30 + 0.70 * ends) * (at.along < 1 ? 1 : 0.4) * (0.35 + 0.8 * hair);
+  const double body = 1 - smooth_step(0.35, 1.35, edge + 0.9 * (hair - 0.5));
+  const double ends = smooth_step(-0.05, 0.14, at.along) * (1 - 0.85 * smooth_step(0.72, 1.0, at.along));
+  return body * (0.45 + 0.75 * ends) * (at.along < 1 ? 1 : 0.4) * (0.35 + 0.85 * hair);
 }
 
 /// The roots of the lashes darken the edge of a lid; most in the outer half.

@@ -23,7 +23,7 @@ Material skin_material() {
 
 Material eye_material() {
   Material m;
-  m.albedo = {0.72, 0.70, 0.68};
+  m.albedo = {0.64, 0.62, 0.60};
   m.roughness = 0.06;
   m.specular = 0.04;
   m.scatter = {0.12, 0.08, 0.07};

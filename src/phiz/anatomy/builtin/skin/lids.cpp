@@ -23,7 +23,7 @@ constexpr double back_clearance = 0.9;  // where nobody sees it
 constexpr double caruncle = 0.5;        // how far it stands out from the eyeball
 constexpr double margin_width = 1.7;
 /// How far the skin between outer canthus and temple stands out from the straight way, millimetres.
-constexpr double temple_round[n] = {0, 0, 0, 0, 0, 0.3, 1.4, 1.9, 2, 1.8, 0.8, 0, 0, 0, 0, 0};
+constexpr double temple_round[n] = {0, 0, 0, 0, 0, 0.3, 1.1, 1.2, 0.8, 0.8, 0.5, 0, 0, 0, 0, 0};
 /// How closely the lids follow the ball: less towards the canthi.
 constexpr double follow[n] = {0, 0.4, 0.75, 0.95, 1, 0.9, 0.5, 0.15, 0, 0.15, 0.5, 0.9, 1, 1, 0.75, 0.4};
 
@@ -61,7 +61,7 @@ void place_lids(SkinForm& form, const Proportions& proportions, const IdentityPa
     // Across the lid to the rim on the sheet: fraction of the way and distance from the eyeball's surface.
     const Vector3d rim = form.at(topology.eye(0, c)) - centre;
     const double fraction[5] = {1, upper ? 0.64 : 0.88, upper ? 0.48 : 0.72, upper ? 0.44 : 0.44, upper ? 0.2 : 0.18};
-    const double height[5] = {0, upper ? 8.8 : 5.9, upper ? 5.5 : 4.9, upper ? 3.2 : 3.4, upper ? 2.8 : 2.6};
+    const double height[5] = {0, upper ? 8.8 : 5.9, upper ? 4.9 : 4.9, upper ? 2.9 : 3.4, upper ? 2.8 : 2.6};
     const double hug[5] = {0, upper ? 1 : 0.3, upper ? 1 : 0.8, 1, 1};
     for (int ring = 1; ring <= 4; ++ring) {
       Vector3d p = outer_edge + fraction[ring] * (rim - outer_edge);

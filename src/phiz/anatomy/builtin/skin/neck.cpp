@@ -18,7 +18,7 @@ struct NeckRow {
 };
 constexpr NeckRow neck_rows[] = {{0, -158, 0.06, 22, 1, -1.5},
                                  {1, -152.5, 0.06, 26, 1, -1},
-                                 {2, -118, 0, 52, 1.6, 2.2}};
+                                 {2, -118, 0, 52, 1.6, 1.4}};
 constexpr double neck_angles[SkinTopology::columns + 1] = {0,  9,  18,  27,  36,  46,  56,  66,  76, 86,
                                                            96, 105, 113, 121, 130, 141, 153, 166, 180};
 constexpr double cut_rim = 4;  // between the edge of the cut and the ring inside it
@@ -32,7 +32,7 @@ void place_neck(SkinForm& form) {
       const double angle = neck_angles[i];
       const auto ridge = [&](double at, double width) { return std::exp(-std::pow((angle - at) / width, 2)); };
       const double relief = row.muscle * (ridge(row.muscle_angle, 13) - 0.7 * ridge(row.muscle_angle - 26, 14)) +
-                            row.larynx * ridge(0, 14);
+                            row.larynx * ridge(0, 18);
       Vector3d p = cranium_point(angle, row.y);
       const Vector3d out(std::sin(angle * std::numbers::pi / 180), 0, std::cos(angle * std::numbers::pi / 180));
       p += relief * out;
