@@ -209,25 +209,30 @@ void separate(TriangleMesh& mandible, const TriangleMesh& skull, double gap) {
   constexpr double step = 0.0005;
   TriangleMesh around = skull;
   around.F.col(1).swap(around.F.col(2));  // the mandible lies on the inner side of the skull turned inside out
-  keep_clear(mandible, around, gap);
   const int skull_faces = static_cast<int>(skull.F.rows());
   const MatrixX3d skull_normals = triangle_normals(skull.V, skull.F);
-  for (int pass = 0; pass < 40; ++pass) {
-    const MatrixX3d normals = vertex_normals(mandible.V, mandible.F);
-    MatrixX3d move = MatrixX3d::Zero(mandible.V.rows(), 3);
-    bool crossing = false;
-    for (const auto& [a, b] : self_intersections(joined(std::array{skull, mandible}))) {
-      if (a >= skull_faces || b < skull_faces) continue;
-      crossing = true;
-      for (int k = 0; k < 3; ++k) {
-        const int v = mandible.F(b - skull_faces, k);
-        move.row(v) = step * (0.5 * skull_normals.row(a) - normals.row(v)).normalized();
+  const auto uncross = [&] {
+    for (int pass = 0; pass < 40; ++pass) {
+      const MatrixX3d normals = vertex_normals(mandible.V, mandible.F);
+      MatrixX3d move = MatrixX3d::Zero(mandible.V.rows(), 3);
+      bool crossing = false;
+      for (const auto& [a, b] : self_intersections(joined(std::array{skull, mandible}))) {
+        if (a >= skull_faces || b < skull_faces) continue;
+        crossing = true;
+        for (int k = 0; k < 3; ++k) {
+          const int v = mandible.F(b - skull_faces, k);
+          move.row(v) = step * (0.5 * skull_normals.row(a) - normals.row(v)).normalized();
+        }
       }
+      if (!crossing) return;
+      mandible.V += move;
     }
-    if (!crossing) break;
-    mandible.V += move;
+  };
+  for (int round = 0; round < 3; ++round) {  // each of the three may undo a little of the others' work
+    keep_clear(mandible, around, gap);
+    uncross();
+    untangle(mandible, 30);
   }
-  untangle(mandible, 30);
 }
 
 /// The zero set of `field` as the simulation needs it: clear of the skin and free of crossings. Where long triangles
