@@ -177,9 +177,10 @@ double brow_density(const FaceLine& brow, const Vector3d& p) {
 /// The roots of the lashes darken the edge of a lid; most in the outer half.
 double lash_density(const FaceLine& margin, const Vector3d& p, bool upper) {
   const Beside at = margin.beside(p);
-  const double reach = (upper ? 0.00075 : 0.00050) * (0.6 + 0.4 * line_noise(at.along * margin.length * 2600, 7));
+  const double lash = line_noise(at.along * margin.length * 2600, 7);
+  const double reach = (upper ? 0.00075 : 0.00055) * (0.4 + 0.6 * lash);
   const double ends = smooth_step(0.02, 0.25, at.along) * (1 - smooth_step(0.96, 1.0, at.along));
-  return (upper ? 0.85 : 0.40) * ends * (1 - smooth_step(0.2 * reach, reach, at.distance));
+  return (upper ? 0.85 : 0.5 * lash * lash) * ends * (1 - smooth_step(0.2 * reach, reach, at.distance));
 }
 
 }  // namespace
@@ -237,7 +238,7 @@ std::function<Vector3d(const Vector3d&)> eye_pattern(const Vector3d& centre, dou
     constexpr double limbus = 0.49, pupil = 0.155;  // of the radius
     const double across = std::clamp((rho - pupil) / (limbus - pupil), 0.0, 1.0);
     const double fibres =
-        0.55 * ring_noise(around + 0.05 * std::sin(20 * across), 90, 1) + 0.45 * ring_noise(around, 37, 2);
+        0.55 * ring_noise(around + 0.015 * std::sin(20 * across), 90, 1) + 0.45 * ring_noise(around, 37, 2);
     const Vector3d outer(0.105, 0.145, 0.160), inner(0.300, 0.215, 0.115);
     Vector3d iris = outer + (inner - outer) * (1 - smooth_step(0.15, 0.65, across + 0.25 * (fibres - 0.5)));
     iris *= 0.55 + 0.95 * fibres;

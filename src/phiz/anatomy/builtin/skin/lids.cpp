@@ -25,7 +25,7 @@ constexpr double margin_width = 1.7;
 /// How far the skin between outer canthus and temple stands out from the straight way, millimetres.
 constexpr double temple_round[n] = {0, 0, 0, 0, 0, 0.3, 1.1, 1.2, 0.8, 0.8, 0.5, 0, 0, 0, 0, 0};
 /// How closely the lids follow the ball: less towards the canthi.
-constexpr double follow[n] = {0, 0.4, 0.75, 0.95, 1, 0.9, 0.5, 0.15, 0, 0.15, 0.5, 0.9, 1, 1, 0.75, 0.4};
+constexpr double follow[n] = {0, 0.4, 0.75, 0.95, 1, 0.9, 0.5, 0.15, 0, 0.08, 0.35, 0.8, 1, 1, 0.75, 0.4};
 
 }  // namespace
 
@@ -71,15 +71,22 @@ void place_lids(SkinForm& form, const Proportions& proportions, const IdentityPa
       if (p.norm() < r_min) p *= r_min / p.norm();
       form.place(topology.eye(ring, c), centre + p, ring >= 2 ? 20 : 1);
     }
-    // Socket: from the margin round the eyeball to the pole behind it. At the inner canthus the lining first runs over
-    // to the front of the eyeball, and swells to the caruncle.
-    const bool inner_canthus = c == 0 || c == 1 || c == n - 1;
+    // Socket: from the margin round the eyeball to the pole behind it. At the canthi the lining first runs over to the
+    // front of the eyeball; at the inner one it swells to the caruncle.
+    const bool inner_canthus = c == 0 || c == 1 || c == n - 1, outer_canthus = c == 8;
     const Vector3d start = margin(c, 1), around = Vector3d(start.x(), start.y(), 0).normalized();
     const double angle0 = std::acos(std::clamp(inner_edge.normalized().z(), -1.0, 1.0));
     for (int ring = 7; ring <= 9; ++ring) {
-      constexpr double share[3] = {0.17, 0.50, 0.78}, canthus_angle[3] = {1.02, 1.72, 2.42};
-      const double angle = inner_canthus ? canthus_angle[ring - 7] : angle0 + share[ring - 7] * (M_PI - angle0);
-      const double above = ring > 8 || (ring == 8 && !inner_canthus) ? back_clearance : ring == 8 ? 0.4 : c == 0 ? caruncle : inner_canthus ? clearance : 0.62;
+      constexpr double share[3] = {0.17, 0.50, 0.78}, inner_angle[3] = {1.02, 1.72, 2.42}, outer_angle[3] = {1.24, 1.85, 2.45};
+      const double angle = inner_canthus   ? inner_angle[ring - 7]
+                           : outer_canthus ? outer_angle[ring - 7]
+                                           : angle0 + share[ring - 7] * (M_PI - angle0);
+      const bool canthus = inner_canthus || outer_canthus;
+      const double above = ring == 9 || (ring == 8 && !canthus) ? back_clearance
+                           : ring == 8                          ? 0.4
+                           : c == 0                             ? caruncle
+                           : canthus                            ? clearance
+                                                                : 0.62;
       const double r = radius + above;
       form.place(topology.eye(ring, c),
                  centre + r * Vector3d(std::sin(angle) * around.x(), std::sin(angle) * around.y(), std::cos(angle)),
