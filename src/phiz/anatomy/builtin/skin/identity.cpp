@@ -41,6 +41,10 @@ const std::array<IdentityParameterName, identity_parameter_count> identity_param
     {"ear_flare", &P::ear_flare},
     {"neck_thickness", &P::neck_thickness},
     {"fat", &P::fat},
+    {"lid_fold", &P::lid_fold},
+    {"brow_height", &P::brow_height},
+    {"nose_tip_width", &P::nose_tip_width},
+    {"chin_width", &P::chin_width},
 }};
 
 namespace {
@@ -76,7 +80,11 @@ constexpr Shares shares[] = {{&P::head_length, 0.55, 0.4, 0, 0},
                              {&P::chin_projection, 0.25, 0, 0, -0.25},
                              {&P::ear_size, 0.45, 0.3, 0, 0},
                              {&P::neck_thickness, 0.7, 0.2, 0.45, 0},
-                             {&P::fat, 0, 0, 0.9, 0}};
+                             {&P::fat, 0, 0, 0.9, 0},
+                             {&P::lid_fold, 0.1, 0, 0.3, 0.1},
+                             {&P::brow_height, -0.45, 0, 0, 0},
+                             {&P::nose_tip_width, 0.3, 0, 0.1, 0.4},
+                             {&P::chin_width, 0.5, 0.1, 0.1, 0}};
 
 }  // namespace
 

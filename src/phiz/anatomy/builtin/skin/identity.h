@@ -42,6 +42,10 @@ struct IdentityParameters {
   double ear_flare = 0;        ///< positive: ears stand out
   double neck_thickness = 0;   ///< girth of the neck
   double fat = 0;              ///< flesh over the whole face and under the chin
+  double lid_fold = 0;         ///< positive: the upper lid's fold hangs fuller
+  double brow_height = 0;      ///< positive: brows further above the eyes
+  double nose_tip_width = 0;   ///< positive: a broad, round tip
+  double chin_width = 0;       ///< positive: a broad chin
 };
 
 /// A parameter with its name, so that parameters can be listed, read and written.
@@ -49,7 +53,7 @@ struct IdentityParameterName {
   std::string_view name;
   double IdentityParameters::*value;
 };
-inline constexpr int identity_parameter_count = 29;
+inline constexpr int identity_parameter_count = 33;
 extern const std::array<IdentityParameterName, identity_parameter_count> identity_parameter_names;
 
 /// A plausible adult: normal deviates, clamped to +-2.2, that hang together as they do in people through sex, size,
