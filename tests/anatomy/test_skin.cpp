@@ -54,6 +54,17 @@ TEST(Skin, DoesNotIntersectItselfForAnyone) {
   }
 }
 
+TEST(Skin, ExtremeEarsStayClearOfTheHead) {
+  for (const double flare : {-2.5, 2.5})
+    for (const double size : {-2.5, 2.5}) {
+      IdentityParameters identity;
+      identity.ear_flare = flare;
+      identity.ear_size = size;
+      const SkinSurface skin = build_skin(personalise({}, identity), identity);
+      EXPECT_TRUE(self_intersections(refine(skin, 1).mesh).empty()) << "flare " << flare << ", size " << size;
+    }
+}
+
 TEST(Skin, IsSymmetricForSymmetricParameters) {
   const SkinTopology& topology = skin_topology();
   for (std::uint64_t seed : {0, 7}) {
@@ -272,6 +283,40 @@ TEST(Skin, ProfileHasChinAndThroat) {
   const double angle = 180 / M_PI * std::acos(floor.normalized().dot(-throat.normalized()));
   EXPECT_GT(angle, 100);
   EXPECT_LT(angle, 135);
+}
+
+TEST(Skin, MeanFaceHasThePublishedDistances) {
+  // Adults, means over the sexes of doi 10.1186/s40902-019-0191-7 and of doi 10.1186/2196-1042-14-32, millimetres.
+  const SkinSurface& skin = mean_person();
+  const MatrixX3d V = 1e3 * refine(skin, 0).mesh.V;
+  const auto at = [&](const std::string& name) -> Vector3d {
+    for (const Landmark& landmark : skin.landmarks)
+      if (landmark.name == name) return V.row(landmark.skin_vertex);
+    ADD_FAILURE() << name;
+    return Vector3d::Zero();
+  };
+  const auto across = [&](const std::string& name) { return (at("left" + name) - at("right" + name)).norm(); };
+  const auto between = [&](const std::string& a, const std::string& b) { return (at(a) - at(b)).norm(); };
+  EXPECT_NEAR(across("Endocanthion"), 32, 2);
+  EXPECT_NEAR(across("Exocanthion"), 94, 3);
+  EXPECT_NEAR(between("leftEndocanthion", "leftExocanthion"), 31, 2);
+  EXPECT_NEAR(across("Alare"), 37, 2);
+  EXPECT_NEAR(across("Cheilion"), 50, 2);
+  EXPECT_NEAR(across("Tragion"), 141, 4);
+  EXPECT_NEAR(between("nasion", "pronasale"), 45, 3);
+  EXPECT_NEAR(between("nasion", "subnasale"), 50, 3);
+  EXPECT_NEAR(between("subnasale", "menton"), 70, 4);
+}
+
+TEST(Skin, LidsFrameTheIrisAsAtRest) {
+  const SkinTopology& topology = skin_topology();
+  const Proportions p;
+  const MatrixX3d V = 1e3 * refine(mean_person(), 0).mesh.V;
+  constexpr double iris = 5.9;
+  const auto margin = [&](int c) { return V(topology.eye(6, c), 1) - 1e3 * p.eye_centre.y(); };
+  EXPECT_GT(iris - margin(4), 1);  // the upper lid covers 1 to 2.5 mm of it
+  EXPECT_LT(iris - margin(4), 2.5);
+  EXPECT_NEAR(margin(12), -iris, 0.6);  // the lower lid touches it
 }
 
 TEST(Skin, RefusesNonsense) {

@@ -58,7 +58,7 @@ constexpr EarPoint auricle[n][SkinTopology::ear_rings + 1] = {
     {{5, -22, 0}, {8, -22, -1.5}, {11, -26, -1.2}, {14, -28.3, 0.2}, {12, -25.5, 2.2}, {10.2, -20, 2.4},
      {9.8, -14.2, 3.2}, {9.6, -11.3, -1.5}, {9.6, -9.6, -4.8}}};
 /// How much of a person's flare the rings take: the root and the bottom of the concha stay with the head.
-constexpr double flare_share[SkinTopology::ear_rings + 1] = {0, 0.4, 1, 1, 1, 1, 0.7, 0.4, 0.2};
+constexpr double flare_share[SkinTopology::ear_rings + 1] = {0, 0.75, 1, 1, 1, 1, 0.7, 0.4, 0.2};
 /// Half the width of the head along the root before the ear; behind it the root lies on the cranium.
 constexpr int root_before = 8;
 constexpr double root_x[root_before] = {64.8, 66.8, 68.2, 69.1, 69.7, 70.2, 70.8, 71.7};
@@ -71,7 +71,7 @@ void place_ears(SkinForm& form, const IdentityParameters& identity) {
   const double tilt = 14 * M_PI / 180, size = 1 + 0.065 * identity.ear_size;
   const Vector3d up(0.09, std::cos(tilt), -std::sin(tilt)), origin(70.2, 4, -10.5);
   const auto point = [&](const EarPoint& p, double share) -> Vector3d {
-    const double flare = (25 + 3.6 * share * identity.ear_flare) * M_PI / 180;
+    const double flare = (25.5 + 3.1 * share * identity.ear_flare) * M_PI / 180;
     Vector3d back(std::sin(flare), -std::sin(tilt) * std::cos(flare), -std::cos(tilt) * std::cos(flare));
     back = (back - back.dot(up) / up.squaredNorm() * up).normalized();
     const Vector3d out = back.cross(up).normalized();

@@ -68,7 +68,7 @@ void fit_person(SkinForm& form, const Proportions& proportions, const IdentityPa
       {q.nose_bridge, {0, 18, 86}, {9, 12, 14}, {0, 0, 2.0}},
       {q.nose_width, {17, -5, 79}, {7, 8, 10}, {0.4, 0, 0}},
       {q.cheekbones, {48, 3, 52}, {17, 12, 18}, {1.5, 0.4, 1.8}},
-      {q.cheek_fullness, {46, -25, 55}, {16, 18, 20}, {2.4, 0, 1.9}},
+      {q.cheek_fullness, {46, -24, 54}, {20, 21, 24}, {2.2, 0, 1.7}},
       {q.upper_lip, {0, -31, 88}, {22, 3.2, 12}, {0, 1.1, 0.9}},
       {q.lower_lip, {0, -45, 86}, {21, 3.6, 12}, {0, -1.1, 1.0}},
       {q.nose_tip_width, {7, -3, 93}, {5, 7, 8}, {0.9, 0, -0.2}},
@@ -76,7 +76,7 @@ void fit_person(SkinForm& form, const Proportions& proportions, const IdentityPa
       {q.chin_width, {16, -73, 76}, {9, 12, 14}, {1.4, 0, -0.2}},
       {q.neck_thickness, {55, -125, -40}, {45, 45, 60}, {4, 0, 0}},
       {q.neck_thickness, {0, -120, 10}, {40, 35, 30}, {0, 0, 2.5}},
-      {q.fat, {44, -38, 48}, {22, 24, 26}, {3.0, -0.7, 1.6}},
+      {q.fat, {46, -36, 44}, {26, 28, 32}, {2.7, -0.6, 1.3}},
       {q.fat, {10, -92, 40}, {32, 14, 28}, {0.4, -3.6, 1.0}},
       {q.fat, {50, -110, -20}, {40, 40, 50}, {2.5, 0, 0.8}},
   };
@@ -98,7 +98,7 @@ void fit_person(SkinForm& form, const Proportions& proportions, const IdentityPa
   Vector3d with_root = Vector3d::Zero();
   for (int c = 0; c < SkinTopology::ear_columns; ++c) {
     with_root += displacement(form.at(topology.ear(0, c))) / SkinTopology::ear_columns;
-    for (int ring = 0; ring <= SkinTopology::ear_rings; ++ring) in_ear[topology.ear(ring, c)] = std::min(1.0, 0.5 + 0.25 * ring);
+    for (int ring = 0; ring <= SkinTopology::ear_rings; ++ring) in_ear[topology.ear(ring, c)] = std::min(1.0, 0.5 + 0.125 * ring);
   }
   for (int u = 1; u < 4; ++u)
     for (int v = 1; v < 4; ++v) in_ear[topology.concha(u, v)] = 1;
