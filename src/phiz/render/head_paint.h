@@ -15,8 +15,8 @@ namespace phiz {
 /// so. Unknown regions are skipped; borders are blurred over a few millimetres.
 MatrixX3d paint_skin(const TriangleMesh& skin, const std::map<std::string, VectorXi>& regions);
 
-/// Pattern of hair over the skin at rest: brows along the landmarks "17" to "21" and "22" to "26", roots of lashes along
-/// the loops of the lid margins. Empty when the head has neither.
+/// Pattern of hair over the skin at rest: brows along the landmarks "17" to "21" and "22" to "26", roots of lashes
+/// along the loops of the lid margins. Empty when the head has neither.
 std::function<Vector3d(const Vector3d&)> hair_pattern(const HeadTemplate& head);
 
 /// Pattern of an eyeball at rest that looks along +z: sclera with a warm rim, iris with fibres and a dark limbal ring,

@@ -14,10 +14,10 @@ struct Section {
 };
 /// From the cut of the neck to where the vault begins; above the neck the front halves lie inside the face.
 constexpr Section sections[] = {
-    {-158, 59.5, -42, 49, 58},    {-137, 56.2, -38.5, 51.5, 54},   {-116, 54.5, -36.5, 56.5, 50},
+    {-158, 59.5, -42, 49, 58},    {-137, 56.2, -38.5, 51.5, 54}, {-116, 54.5, -36.5, 56.5, 50},
     {-95, 53.5, -36, 64, 46.5},   {-80, 53.6, -36, 70, 45.5},    {-65, 54.8, -35.5, 80, 46},
-    {-50, 57, -34.5, 85, 48},   {-35, 60.3, -33, 90, 52},      {-20, 63.8, -31, 95, 58.5},
-    {-5, 66.8, -29, 98, 66.5},    {10, 69.6, -27.5, 99, 74.5},     {25, 72.3, -26.5, 100, 81},
+    {-50, 57, -34.5, 85, 48},     {-35, 60.3, -33, 90, 52},      {-20, 63.8, -31, 95, 58.5},
+    {-5, 66.8, -29, 98, 66.5},    {10, 69.6, -27.5, 99, 74.5},   {25, 72.3, -26.5, 100, 81},
     {40, 74.5, -26, 100.5, 84.5}, {55, 75.5, -26, 100.5, 85},
 };
 constexpr int section_count = static_cast<int>(std::size(sections));
@@ -35,8 +35,8 @@ Section section_at(double y) {
       return i + 1 == section_count ? 0.0 : (value(i + 1, of) - value(i - 1, of)) / dy;
     };
     const double h = sections[k + 1].y - sections[k].y, t = (y - sections[k].y) / h, t2 = t * t, t3 = t2 * t;
-    return (2 * t3 - 3 * t2 + 1) * value(k, of) + (t3 - 2 * t2 + t) * h * slope(k) + (3 * t2 - 2 * t3) * value(k + 1, of) +
-           (t3 - t2) * h * slope(k + 1);
+    return (2 * t3 - 3 * t2 + 1) * value(k, of) + (t3 - 2 * t2 + t) * h * slope(k) +
+           (3 * t2 - 2 * t3) * value(k + 1, of) + (t3 - t2) * h * slope(k + 1);
   };
   return {y, at(&Section::half_width), at(&Section::z_widest), at(&Section::front), at(&Section::back)};
 }
@@ -64,7 +64,8 @@ Vector3d cranium_point(double angle, double y) {
     const double m = exponent(std::cos(a)), rise = std::min(1.0, (y - vault_foot) / (crown - vault_foot));
     share = std::pow(1 - std::pow(rise, m), 1 / m);
   }
-  return {share * s.half_width * std::sin(a), y, s.z_widest + share * (std::cos(a) > 0 ? s.front : s.back) * std::cos(a)};
+  return {share * s.half_width * std::sin(a), y,
+          s.z_widest + share * (std::cos(a) > 0 ? s.front : s.back) * std::cos(a)};
 }
 
 Vector3d cranium_under(const Vector3d& p) {

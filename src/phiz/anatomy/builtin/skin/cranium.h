@@ -9,8 +9,8 @@ namespace phiz {
 
 /// The point of the body's surface at height y (below the crown), `angle` degrees from the front round the left side.
 Vector3d cranium_point(double angle, double y);
-/// The point of the surface straight above or below, or before or behind p: in the direction of p from the middle of
-/// the head.
+/// p carried to the body's surface: above the foot of the vault along the ray from its middle, below it along the
+/// horizontal one.
 Vector3d cranium_under(const Vector3d& p);
 /// Half the width of the body at height y below the crown, at depth z.
 double cranium_half_width(double y, double z);

@@ -98,7 +98,8 @@ void fit_person(SkinForm& form, const Proportions& proportions, const IdentityPa
   Vector3d with_root = Vector3d::Zero();
   for (int c = 0; c < SkinTopology::ear_columns; ++c) {
     with_root += displacement(form.at(topology.ear(0, c))) / SkinTopology::ear_columns;
-    for (int ring = 0; ring <= SkinTopology::ear_rings; ++ring) in_ear[topology.ear(ring, c)] = std::min(1.0, 0.5 + 0.125 * ring);
+    for (int ring = 0; ring <= SkinTopology::ear_rings; ++ring)
+      in_ear[topology.ear(ring, c)] = std::min(1.0, 0.5 + 0.125 * ring);
   }
   for (int u = 1; u < 4; ++u)
     for (int v = 1; v < 4; ++v) in_ear[topology.concha(u, v)] = 1;

@@ -14,7 +14,7 @@ constexpr int n = SkinTopology::eye_columns;
 /// where it can.
 constexpr double margin_x[n] = {-14.6, -11.6, -8.4, -4.6, -0.4, 4,    8,    11.3,
                                 13.6,  11,    7.6,  3.6,  -0.6, -4.6, -8.4, -11.6};
-constexpr double margin_y[n] = {-1.6, 0.6,  2.3,  3.5,  3.9, 3.7,  2.75, 1.4,
+constexpr double margin_y[n] = {-1.6, 0.6,  2.3,  3.5,  3.9,  3.7,  2.75, 1.4,
                                 0.4,  -1.7, -3.8, -5.1, -5.6, -5.2, -4.1, -2.8};
 constexpr double margin_z[n] = {6.2, 6.8, 0, 0, 0, 0, 0, 4.4, 3.2, 4, 0, 0, 0, 0, 0, 6.6};  // least depth
 
@@ -60,8 +60,10 @@ void place_lids(SkinForm& form, const Proportions& proportions, const IdentityPa
     form.place(topology.eye(5, c), centre + outer_edge, 1e3);
     // Across the lid to the rim on the sheet: fraction of the way and distance from the eyeball's surface.
     const Vector3d rim = form.at(topology.eye(0, c)) - centre;
-    const double fraction[5] = {1, upper ? 0.64 : 0.88, upper ? 0.48 - 0.015 * identity.lid_fold : 0.72, upper ? 0.44 : 0.44, upper ? 0.2 : 0.18};
-    const double height[5] = {0, upper ? 8.8 + 0.5 * identity.lid_fold : 5.9, upper ? 4.9 + 0.5 * identity.lid_fold : 4.9, upper ? 2.9 : 3.4, upper ? 2.8 : 2.6};
+    const double fraction[5] = {1, upper ? 0.64 : 0.88, upper ? 0.48 - 0.015 * identity.lid_fold : 0.72,
+                                upper ? 0.44 : 0.44, upper ? 0.2 : 0.18};
+    const double height[5] = {0, upper ? 8.8 + 0.5 * identity.lid_fold : 5.9,
+                              upper ? 4.9 + 0.5 * identity.lid_fold : 4.9, upper ? 2.9 : 3.4, upper ? 2.8 : 2.6};
     const double hug[5] = {0, upper ? 1 : 0.3, upper ? 1 : 0.8, 1, 1};
     for (int ring = 1; ring <= 4; ++ring) {
       Vector3d p = outer_edge + fraction[ring] * (rim - outer_edge);
@@ -77,7 +79,8 @@ void place_lids(SkinForm& form, const Proportions& proportions, const IdentityPa
     const Vector3d start = margin(c, 1), around = Vector3d(start.x(), start.y(), 0).normalized();
     const double angle0 = std::acos(std::clamp(inner_edge.normalized().z(), -1.0, 1.0));
     for (int ring = 7; ring <= 9; ++ring) {
-      constexpr double share[3] = {0.17, 0.50, 0.78}, inner_angle[3] = {1.02, 1.72, 2.42}, outer_angle[3] = {1.29, 1.85, 2.45};
+      constexpr double share[3] = {0.17, 0.50, 0.78}, inner_angle[3] = {1.02, 1.72, 2.42},
+                       outer_angle[3] = {1.29, 1.85, 2.45};
       const double angle = inner_canthus   ? inner_angle[ring - 7]
                            : outer_canthus ? outer_angle[ring - 7]
                                            : angle0 + share[ring - 7] * (M_PI - angle0);

@@ -16,10 +16,9 @@ struct NeckRow {
   double muscle;        // how far it stands out
   double larynx;        // likewise; negative: the hollow above the breastbone
 };
-constexpr NeckRow neck_rows[] = {{0, -158, 0.06, 22, 1, -1.5},
-                                 {1, -152.5, 0.06, 26, 1, -1},
-                                 {2, -118, 0, 52, 1.6, 1.4}};
-constexpr double neck_angles[SkinTopology::columns + 1] = {0,  9,  18,  27,  36,  46,  56,  66,  76, 86,
+constexpr NeckRow neck_rows[] = {
+    {0, -158, 0.06, 22, 1, -1.5}, {1, -152.5, 0.06, 26, 1, -1}, {2, -118, 0, 52, 1.6, 1.4}};
+constexpr double neck_angles[SkinTopology::columns + 1] = {0,  9,   18,  27,  36,  46,  56,  66,  76, 86,
                                                            96, 105, 113, 121, 130, 141, 153, 166, 180};
 constexpr double cut_rim = 4;  // between the edge of the cut and the ring inside it
 

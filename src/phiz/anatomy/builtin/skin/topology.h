@@ -55,7 +55,7 @@ class SkinTopology {
   int eye(int ring, int c) const { return eye_[ring][(c + eye_columns) % eye_columns]; }
   int nostril(int ring, int c) const { return nostril_[ring][(c + nostril_columns) % nostril_columns]; }
   int ear(int ring, int c) const { return ear_[ring][(c + ear_columns) % ear_columns]; }
-  int crown(int u, int v) const { return crown_[u][v]; }    ///< u: 0 midline .. 4, v: 0 front .. 10 back
+  int crown(int u, int v) const { return crown_[u][v]; }  ///< u: 0 midline .. 4, v: 0 front .. 10 back
   int foot_rim(int i) const { return foot_rim_[i]; }
   int foot(int u, int v) const { return foot_[u][v]; }      ///< u: 0 midline .. 6, v: 0 front .. 6 back; rim: foot_rim
   int throat(int u, int v) const { return throat_[u][v]; }  ///< u: 0 midline .. 7, v: 0 upper .. 2 lower

@@ -8,19 +8,19 @@
 namespace phiz {
 namespace {
 
-constexpr int first_behind = 14;  // the column behind the ear
-constexpr double firmness = 0.03;   // large and round: fairness counts more than the places
+constexpr int first_behind = 14;   // the column behind the ear
+constexpr double firmness = 0.03;  // large and round: fairness counts more than the places
 
 /// Where a row runs behind the ear: its angle and height there, and its height at the back midline.
 struct Behind {
   int j;
   double angle, y, y_back;
 };
-constexpr Behind rows_behind[] = {{3, 112, -90, -97}, {4, 106, -70, -76},   {5, 98, -53, -57},   {6, 92, -44, -39},
-                                  {7, 88, -37, -24},  {8, 86, -31, -11},    {9, 84, -26, 1},     {10, 83, -20.5, 11},
-                                  {11, 84, -11.6, 20}, {12, 88, -4.8, 30},  {13, 92, 2.8, 41},   {20, 97, 11.5, 53},
-                                  {21, 103, 28, 64},  {22, 105, 46, 76},    {23, 110, 65, 88.5}, {24, 114, 84, 100.5},
-                                  {25, 119, 104, 112.5}, {26, 124, 121, 123.5}};
+constexpr Behind rows_behind[] = {
+    {3, 112, -90, -97},   {4, 106, -70, -76},    {5, 98, -53, -57},    {6, 92, -44, -39},   {7, 88, -37, -24},
+    {8, 86, -31, -11},    {9, 84, -26, 1},       {10, 83, -20.5, 11},  {11, 84, -11.6, 20}, {12, 88, -4.8, 30},
+    {13, 92, 2.8, 41},    {20, 97, 11.5, 53},    {21, 103, 28, 64},    {22, 105, 46, 76},   {23, 110, 65, 88.5},
+    {24, 114, 84, 100.5}, {25, 119, 104, 112.5}, {26, 124, 121, 123.5}};
 
 }  // namespace
 
