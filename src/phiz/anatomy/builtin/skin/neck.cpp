@@ -16,8 +16,7 @@ struct NeckRow {
   double muscle;        // how far it stands out
   double larynx;        // likewise; negative: the hollow above the breastbone
 };
-constexpr NeckRow neck_rows[] = {
-    {0, -158, 0.06, 22, 1, -1.5}, {1, -152.5, 0.06, 26, 1, -1}, {2, -118, 0, 52, 1.6, 1.4}};
+constexpr NeckRow neck_rows[] = {{0, -169, 0.06, 22, 1, -1.5}, {1, -163, 0.06, 26, 1, -1}, {2, -122, 0, 52, 1.6, 1.4}};
 constexpr double neck_angles[SkinTopology::columns + 1] = {0,  9,   18,  27,  36,  46,  56,  66,  76, 86,
                                                            96, 105, 113, 121, 130, 141, 153, 166, 180};
 constexpr double cut_rim = 4;  // between the edge of the cut and the ring inside it
@@ -38,7 +37,7 @@ void place_neck(SkinForm& form) {
       p.y() -= row.slope * p.z();
       form.place(topology.sheet(i, row.j), p);
     }
-  const Vector3d middle(0, -155.5, -46);
+  const Vector3d middle(0, -166.3, -46);
   for (int i = 0; i <= SkinTopology::columns; ++i) {
     const Vector3d edge = form.at(topology.sheet(i, 0));
     form.place(topology.foot_rim(i), edge + cut_rim * (middle - edge).normalized());
