@@ -76,8 +76,8 @@ ContactScene::~ContactScene() = default;
 ContactScene::ContactScene(ContactScene&&) noexcept = default;
 ContactScene& ContactScene::operator=(ContactScene&&) noexcept = default;
 
-int ContactScene::add_patch(const MatrixX3d& rest, const MatrixX3i& triangles) {
-  state_->obstacles.push_back(Obstacle::patch(rest, triangles));
+int ContactScene::add_patch(const MatrixX3d& rest, const MatrixX3i& triangles, bool extended) {
+  state_->obstacles.push_back(Obstacle::patch(rest, triangles, extended));
   return static_cast<int>(state_->obstacles.size()) - 1;
 }
 

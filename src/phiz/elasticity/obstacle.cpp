@@ -11,7 +11,7 @@
 
 namespace phiz {
 
-Obstacle Obstacle::patch(const MatrixX3d& rest, const MatrixX3i& triangles) {
+Obstacle Obstacle::patch(const MatrixX3d& rest, const MatrixX3i& triangles, bool extended) {
   std::vector<int> vertices(triangles.data(), triangles.data() + triangles.size());
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
@@ -25,7 +25,9 @@ Obstacle Obstacle::patch(const MatrixX3d& rest, const MatrixX3i& triangles) {
     for (int k = 0; k < 3; ++k)
       F(f, k) =
           static_cast<int>(std::lower_bound(vertices.begin(), vertices.end(), triangles(f, k)) - vertices.begin());
-  return {V, F, std::move(vertices)};
+  Obstacle patch(V, F, std::move(vertices));
+  patch.extended_ = extended;
+  return patch;
 }
 
 Obstacle Obstacle::rigid(const TriangleMesh& mesh) {
@@ -144,6 +146,12 @@ std::optional<SignedContact> Obstacle::closest(const Vector3d& point, double rea
     normal = vertex_normal(F_(f, k));
   }
   const Vector3d r = p - near->position;
+  if (contact.on_rim && extended_) {
+    contact.on_rim = false;
+    contact.normal = face_normal(f);
+    contact.gap = r.dot(contact.normal);
+    return contact;
+  }
   const double distance = std::sqrt(near->squared_distance);
   const double sign = r.dot(normal) >= 0 ? 1 : -1;
   contact.gap = sign * distance;

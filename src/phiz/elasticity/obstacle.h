@@ -17,13 +17,14 @@ struct SignedContact {
   Vector3d normal = Vector3d::UnitZ();
   int triangle = -1;
   Vector3d barycentric = Vector3d::Zero();
-  bool on_rim = false;  ///< the closest point lies on the boundary of an open patch: there is no inside or outside
+  bool on_rim = false;  ///< the closest point lies on the boundary of an open patch: there is no inside or outside; an
+                        ///< extended patch goes on in the plane of the face
 };
 
 class Obstacle {
  public:
   /// A patch: `triangles` over rows of `rest`.
-  static Obstacle patch(const MatrixX3d& rest, const MatrixX3i& triangles);
+  static Obstacle patch(const MatrixX3d& rest, const MatrixX3i& triangles, bool extended = false);
   static Obstacle rigid(const TriangleMesh& mesh);
 
   bool is_rigid() const { return vertices_.empty(); }
@@ -72,6 +73,7 @@ class Obstacle {
   Vector3d low_, high_;
   double travel_ = 0;
   bool refitted_ = true;
+  bool extended_ = false;
 };
 
 }  // namespace phiz

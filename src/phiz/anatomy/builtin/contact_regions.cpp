@@ -2,6 +2,7 @@
 #include "phiz/anatomy/builtin/contact_regions.h"
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include "phiz/core/error.h"
@@ -80,8 +81,12 @@ void assign_contacts(HeadTemplate& head, const SkinRegions& regions) {
   }
   add("leftCheek", left);
   add("rightCheek", right);
-  for (const char* lid : {"leftUpperLid", "leftLowerLid", "rightUpperLid", "rightLowerLid"})
-    add(lid, flags(regions, {lid}, n));
+  for (const std::string lid : {"leftUpperLid", "leftLowerLid", "rightUpperLid", "rightLowerLid"}) {
+    add(lid, flags(regions, {lid.c_str()}, n));
+    const std::string margin = lid + "Margin";
+    add(margin, flags(regions, {margin.c_str()}, n));
+    head.contact_regions.back().extended = true;
+  }
 
   for (const char* gums : {"upperGums", "lowerGums"}) release_vertices_inside(head, gums);
 
@@ -92,8 +97,9 @@ void assign_contacts(HeadTemplate& head, const SkinRegions& regions) {
   for (const std::string side : {"left", "right"}) {
     head.contact_pairs.push_back({side + "UpperLid", side + "Eye"});
     head.contact_pairs.push_back({side + "LowerLid", side + "Eye"});
-    head.contact_pairs.push_back({side + "UpperLid", side + "LowerLid"});
-    head.contact_pairs.push_back({side + "LowerLid", side + "UpperLid"});
+    // The lids meet with their margins, edge to edge.
+    head.contact_pairs.push_back({side + "UpperLidMargin", side + "LowerLidMargin"});
+    head.contact_pairs.push_back({side + "LowerLidMargin", side + "UpperLidMargin"});
   }
 }
 

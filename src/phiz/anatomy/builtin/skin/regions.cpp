@@ -107,6 +107,8 @@ SkinRegions skin_regions() {
     s.eye(3, 6, 8, 15);
     s.eye(3, 6, 0, 0);
   });
+  pair("UpperLidMargin", [](RegionSet& s) { s.eye(5, 6, 1, 7); });
+  pair("LowerLidMargin", [](RegionSet& s) { s.eye(5, 6, 9, 15); });
   pair("Socket", [&](RegionSet& s) {
     s.eye(6, 9, 0, 15);
     for (int u = 1; u < 4; ++u)
