@@ -47,7 +47,7 @@ inline HeadTemplate sample_head() {
   muscle.fraction = VectorXd::Constant(1, 0.4);
   muscle.direction = Vector3d::UnitY().transpose();
   head.muscles = {muscle};
-  head.contact_regions.push_back({"lips", VectorXi::Zero(1), skin.F.topRows(2)});
+  head.contact_regions.push_back({"lips", VectorXi::Zero(1), skin.F.topRows(2), true});
   head.contact_pairs = {{"lips", "skull"}};
   head.left_eye_centre = Vector3d(0.03, 0.02, 0.05);
   head.right_eye_centre = Vector3d(-0.03, 0.02, 0.05);
