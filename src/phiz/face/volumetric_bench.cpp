@@ -87,6 +87,7 @@ VolumetricBench bench_volumetric(const FaceModel& model, const Performance& perf
   const int every = options.reference_frames > 0 ? std::max(1, bench.frames / options.reference_frames) : 0;
   for (int f = 0; f < bench.frames && !interrupted(); ++f) {
     const VectorXd weights = shape_weights(match, performance, f);
+    const MatrixX3d before = simulation.positions();
     const auto frame_begin = Clock::now();
     const SolveStatistics statistics = simulation.solve_static(weights);
     const MatrixX3d drawn = simulation.skin();
@@ -103,7 +104,7 @@ VolumetricBench bench_volumetric(const FaceModel& model, const Performance& perf
       const VectorXi& soft = simulation.soft_tets();
       HeadContacts contacts(model.head, options.simulation.contact_options);
       contacts.place_jaw(jaw_transform(model.head.jaw, simulation.jaw()));
-      MatrixX3d x = simulation.positions();
+      MatrixX3d x = before;  // the reference finds its own way from the last frame
       place_bones(model.head, simulation.jaw(), x);
       const SolveStatistics exact = newton_reference(
           flesh_body(model.head, soft, options.simulation.weights, options.simulation.stiffness),
