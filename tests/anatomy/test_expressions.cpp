@@ -50,12 +50,19 @@ double largest(const std::string& name, const std::string& region) {
   return most;
 }
 
-/// Triangles that the expression folds over: their normal opposes that of their neighbourhood.
+/// Triangles that the expression folds over: their normal opposes that of their neighbourhood. The lining behind the
+/// lids is left out: between lids that press it together normals mean nothing; that it does not cross itself is
+/// another test.
 int folded_triangles(const MatrixX3d& V) {
   const MatrixX3i& F = head().skin.F;
   const MatrixX3d faces = triangle_area_normals(V, F), normals = vertex_normals(V, F);
+  std::vector<char> lining(static_cast<std::size_t>(V.rows()), 0);
+  for (const char* name : {"leftSocket", "rightSocket"})
+    for (const int v : head().skin_regions.at(name)) lining[static_cast<std::size_t>(v)] = 1;
   int count = 0;
   for (Eigen::Index f = 0; f < F.rows(); ++f) {
+    const auto is_lining = [&](int k) { return lining[static_cast<std::size_t>(F(f, k))] != 0; };
+    if (is_lining(0) && is_lining(1) && is_lining(2)) continue;
     const Vector3d around = (normals.row(F(f, 0)) + normals.row(F(f, 1)) + normals.row(F(f, 2))).transpose();
     count += faces.row(f).dot(around.transpose()) < 0;
   }
@@ -69,25 +76,25 @@ MatrixX3d skin_with(const std::vector<std::string>& names, double weight) {
   return V;
 }
 
-/// Pairs of triangles on and round the lips that pass through one another.
+/// Pairs of triangles on and round some regions that pass through one another.
+std::size_t crossings(const std::vector<const char*>& regions, const MatrixX3d& V) {
+  std::vector<char> near(static_cast<std::size_t>(head().skin.V.rows()), 0);
+  for (const char* name : regions)
+    for (const int v : head().skin_regions.at(name)) near[static_cast<std::size_t>(v)] = 1;
+  std::vector<int> faces;
+  for (int f = 0; f < head().skin.F.rows(); ++f)
+    for (int k = 0; k < 3; ++k)
+      if (near[static_cast<std::size_t>(head().skin.F(f, k))]) {
+        faces.push_back(f);
+        break;
+      }
+  TriangleMesh part;
+  part.V = V;
+  part.F = head().skin.F(faces, Eigen::all);
+  return self_intersections(part).size();
+}
 std::size_t crossings_at_the_lips(const MatrixX3d& V) {
-  static const std::vector<int> faces = [] {
-    std::vector<char> near(static_cast<std::size_t>(head().skin.V.rows()), 0);
-    for (const char* name : {"upperLip", "lowerLip", "upperLipInner", "lowerLipInner"})
-      for (const int v : head().skin_regions.at(name)) near[static_cast<std::size_t>(v)] = 1;
-    std::vector<int> found;
-    for (int f = 0; f < head().skin.F.rows(); ++f)
-      for (int k = 0; k < 3; ++k)
-        if (near[static_cast<std::size_t>(head().skin.F(f, k))]) {
-          found.push_back(f);
-          break;
-        }
-    return found;
-  }();
-  TriangleMesh lips;
-  lips.V = V;
-  lips.F = head().skin.F(faces, Eigen::all);
-  return self_intersections(lips).size();
+  return crossings({"upperLip", "lowerLip", "upperLipInner", "lowerLipInner"}, V);
 }
 
 /// By how much the lips are farther apart than at rest, at the most and upright, millimetres.
@@ -109,7 +116,7 @@ double parting(const MatrixX3d& V) {
 // 48 right and 54 left corner of the mouth, 51 top and 57 bottom of the lips, 62 and 66 their parting, 8 chin.
 constexpr int chin = 8, left_inner_brow = 22, left_outer_brow = 25, left_ala = 35, right_corner = 48, left_corner = 54,
               lip_top = 51, lip_bottom = 57, parting_above = 62, parting_below = 66, left_upper_lip = 53,
-              left_lower_lip = 55;
+              left_lower_lip = 55, left_upper_lid = 43, left_lower_lid = 47;
 
 TEST(Expressions, AllFiftyTwoArePresentInTheirOrderAndFinite) {
   ASSERT_EQ(head().expressions.size(), expression_names.size());
@@ -235,6 +242,26 @@ TEST(Expressions, BlinkClosesTheLidsWithoutCuttingTheEyeball) {
       const Vector3d p = (head().skin.V.row(v) + expression("eyeBlinkLeft").displacement.row(v)).transpose();
       EXPECT_GT((p - head().left_eye_centre).norm(), radius - 0.0002) << region << " vertex " << v;
     }
+}
+
+TEST(Expressions, LidsAndTheirLiningDoNotPassThroughThemselves) {
+  const std::vector<const char*> eye{"leftUpperLid", "leftLowerLid", "leftSocket"};
+  const std::size_t neutral = crossings(eye, head().skin.V);
+  for (const char* name : {"eyeBlinkLeft", "eyeSquintLeft", "eyeWideLeft", "eyeLookUpLeft", "eyeLookDownLeft",
+                           "eyeLookInLeft", "eyeLookOutLeft", "cheekSquintLeft", "mouthSmileLeft", "noseSneerLeft"})
+    for (const double weight : {0.5, 1.0})
+      EXPECT_LE(crossings(eye, skin_with({name}, weight)), neutral) << name << " at " << weight;
+}
+
+TEST(Expressions, ClosingLidsLeaveTheBrow) {
+  for (const char* name : {"eyeBlinkLeft", "eyeLookDownLeft"}) EXPECT_LT(largest(name, "leftBrow"), 0.5) << name;
+}
+
+TEST(Expressions, LidsThatCloseTogetherOverlapByLessThanHalfOfTheOpening) {
+  const auto height = [](const MatrixX3d& V, int mark) { return 1e3 * V(vertex(mark), 1); };
+  const MatrixX3d all = skin_with({"eyeBlinkLeft", "eyeSquintLeft", "cheekSquintLeft"}, 1);
+  const double open = height(head().skin.V, left_upper_lid) - height(head().skin.V, left_lower_lid);
+  EXPECT_LT(height(all, left_lower_lid) - height(all, left_upper_lid), 0.5 * open);
 }
 
 TEST(Expressions, JawOpenPartsTheLipsAndMouthCloseClosesThemAgain) {

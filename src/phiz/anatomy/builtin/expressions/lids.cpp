@@ -7,21 +7,71 @@
 
 #include "phiz/anatomy/builtin/ease.h"
 #include "phiz/anatomy/builtin/expressions/skin.h"
+#include "phiz/core/error.h"
 
 namespace phiz {
 namespace {
 
 constexpr int stations = 33;
 constexpr double degree = std::numbers::pi / 180;
-constexpr double closed_at = 0.14;     ///< where the lids meet: share of the fissure, from the lower margin
-constexpr double half_gap = 0.006;     ///< that each lid keeps from there, radians about the middle of the eye
-constexpr double clearance = 0.00012;  ///< that lids keep from the eyeball, metres
+constexpr double clearance = 0.00012;            ///< that lids keep from the eyeball, metres
+constexpr double closed_gap = 0.4 * degree;      ///< between the inner edges of margins that meet
+constexpr double closed_margins = 1.2 * degree;  ///< that margins which meet take up together
+constexpr double tarsus = 7 * degree;            ///< of the upper lid that goes with its margin as a whole
+constexpr double cheek_reach = 55 * degree;      ///< below the lower margin
+
+/// Stations gather at the canthi, where margins turn in.
+double station(int k) {
+  return 0.5 * (1 - std::cos(std::numbers::pi * k / (stations - 1)));
+}
 
 double sample(const VectorXd& values, double across) {
-  const double at = std::clamp(across, 0.0, 1.0) * static_cast<double>(values.size() - 1);
+  const double at = std::acos(1 - 2 * std::clamp(across, 0.0, 1.0)) / std::numbers::pi * (stations - 1);
   const auto i = std::min(static_cast<Eigen::Index>(at), values.size() - 2);
   const double t = at - static_cast<double>(i);
   return (1 - t) * values[i] + t * values[i + 1];
+}
+
+/// Values at the stations through scattered (across, value) points, linear between them.
+VectorXd through(std::vector<std::pair<double, double>> points) {
+  std::sort(points.begin(), points.end());
+  VectorXd values(stations);
+  std::size_t i = 0;
+  for (int k = 0; k < stations; ++k) {
+    const double a = station(k);
+    while (i + 2 < points.size() && points[i + 1].first < a) ++i;
+    const double span = points[i + 1].first - points[i].first;
+    const double t = span > 1e-12 ? std::clamp((a - points[i].first) / span, 0.0, 1.0) : 0;
+    values[k] = (1 - t) * points[i].second + t * points[i + 1].second;
+  }
+  return values;
+}
+
+/// The least of scattered values near every station (within 4 % of the way across); `otherwise` where there is none.
+VectorXd least_near(const std::vector<std::pair<double, double>>& points, const VectorXd& otherwise) {
+  VectorXd values = otherwise;
+  for (int k = 0; k < stations; ++k) {
+    double least = 1e30;
+    for (const auto& [across, value] : points)
+      if (std::abs(across - station(k)) < 0.04) least = std::min(least, value);
+    if (least < 1e30) values[k] = least;
+  }
+  const VectorXd rough = values;
+  for (int k = 1; k + 1 < stations; ++k) values[k] = 0.25 * (rough[k - 1] + 2 * rough[k] + rough[k + 1]);
+  return values;
+}
+
+/// 0 below `from`, 1 above `to`; rises at most 1.25 times as steeply as a straight line.
+double unfold(double from, double to, double x) {
+  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
+  return 0.5 * (t + t * t * (3 - 2 * t));
+}
+
+const VectorXi& region(const HeadTemplate& head, const std::string& name) {
+  const auto found = head.skin_regions.find(name);
+  if (found == head.skin_regions.end() || found->second.size() == 0)
+    reject(head.name, "the skin region '" + name + "' is missing", "expressions need the regions of lids and brows");
+  return found->second;
 }
 
 }  // namespace
@@ -38,78 +88,106 @@ LidControl::LidControl(const HeadTemplate& head, const EyeShape& eye, const std:
   const MatrixX3d upper = skin_curve(head, "loop:" + side + "UpperLidMargin");
   const MatrixX3d lower = skin_curve(head, "loop:" + side + "LowerLidMargin");
   // The canthi are the ends of the margins.
-  const auto inner_end = [&](const MatrixX3d& loop) {
-    const bool first = sign_ * loop(0, 0) < sign_ * loop(loop.rows() - 1, 0);
+  const auto end = [&](const MatrixX3d& loop, double towards) {
+    const bool first = towards * sign_ * loop(0, 0) > towards * sign_ * loop(loop.rows() - 1, 0);
     return Vector3d(loop.row(first ? 0 : loop.rows() - 1));
   };
-  const auto outer_end = [&](const MatrixX3d& loop) {
-    const bool first = sign_ * loop(0, 0) > sign_ * loop(loop.rows() - 1, 0);
-    return Vector3d(loop.row(first ? 0 : loop.rows() - 1));
-  };
-  const Vector3d inner = 0.5 * (inner_end(upper) + inner_end(lower));
-  const Vector3d outer = 0.5 * (outer_end(upper) + outer_end(lower));
-  axis_ = (outer - inner).normalized();
+  inner_ = 0.5 * (end(upper, -1) + end(lower, -1));
+  const Vector3d outer = 0.5 * (end(upper, 1) + end(lower, 1));
+  axis_ = (outer - inner_).normalized();
   ahead_ = (Vector3d::UnitZ() - Vector3d::UnitZ().dot(axis_) * axis_).normalized();
   up_ = ahead_.cross(axis_).normalized();
   if (up_.y() < 0) up_ = -up_;
-  const double length = (outer - inner).norm();
-  const auto across = [&](const Vector3d& p) { return (p - inner).dot(axis_) / length; };
-  const auto margin_angles = [&](const MatrixX3d& loop) {
-    std::vector<std::pair<double, double>> points;
-    for (Eigen::Index i = 0; i < loop.rows(); ++i)
-      points.emplace_back(across(loop.row(i).transpose()), elevation(loop.row(i).transpose()));
-    std::sort(points.begin(), points.end());
-    VectorXd angles(stations);
-    std::size_t i = 0;
-    for (int k = 0; k < stations; ++k) {
-      const double a = k / double(stations - 1);
-      while (i + 2 < points.size() && points[i + 1].first < a) ++i;
-      const double span = points[i + 1].first - points[i].first;
-      const double t = span > 1e-12 ? std::clamp((a - points[i].first) / span, 0.0, 1.0) : 0;
-      angles[k] = (1 - t) * points[i].second + t * points[i + 1].second;
-    }
-    return angles;
-  };
-  nearness_.setZero(head.volume.V.rows());
-  upper_angle_ = margin_angles(upper);
-  lower_angle_ = margin_angles(lower);
-  const auto margin_height = [&](const MatrixX3d& loop, double a) {  // of the outer edge of the margin, near `a`
-    double sum = 0, weights = 0;
-    for (Eigen::Index i = 0; i < loop.rows(); ++i) {
-      const Vector3d p = loop.row(i);
-      const double w = std::exp(-std::pow((across(p) - a) / 0.08, 2)) + 1e-12;
-      sum += w * (p - eye_.centre).norm();
-      weights += w;
-    }
-    return sum / weights;
-  };
+  length_ = (outer - inner_).norm();
 
-  for (Eigen::Index i = 0; i < head.skin_vertices.size(); ++i) {
-    const int v = head.skin_vertices[i];
-    const Vector3d X = head.volume.V.row(v).transpose();
-    const double distance = (X - eye_.centre).norm();
-    if (distance > eye_.radius + 0.010) continue;
-    near_.emplace_back(v, distance);
+  using Points = std::vector<std::pair<double, double>>;
+  const auto collect = [&](const MatrixX3d& X, double Place::*field, double factor) {
+    Points points;
+    for (Eigen::Index i = 0; i < X.rows(); ++i) {
+      const Place p = place(X.row(i).transpose());
+      points.emplace_back(p.across, factor * p.*field);
+    }
+    return points;
+  };
+  const auto of_region = [&](const std::string& name, double factor) {
+    const VectorXi& rows = region(head, side + name);
+    return collect(head.skin.V(std::vector<int>(rows.begin(), rows.end()), Eigen::all), &Place::elevation, factor);
+  };
+  VectorXd &bottom = curves_[0], &bottom_inner = curves_[1], &top_inner = curves_[2], &top = curves_[3],
+           &orbit = curves_[4];
+  bottom = through(collect(lower, &Place::elevation, 1));
+  top = through(collect(upper, &Place::elevation, 1));
+  upper_height_ = through(collect(upper, &Place::distance, 1));
+  lower_height_ = through(collect(lower, &Place::distance, 1));
+  // The inner edges are the lowest place of the upper lid and the highest one of the lower lid.
+  top_inner = least_near(of_region("UpperLid", 1), top).cwiseMin(top);
+  bottom_inner = (-least_near(of_region("LowerLid", -1), -bottom)).cwiseMax(bottom);
+  for (int k = 0; k < stations; ++k) {
+    if (top[k] < bottom[k]) top[k] = bottom[k] = 0.5 * (top[k] + bottom[k]);
+    const double middle = std::clamp(0.5 * (top_inner[k] + bottom_inner[k]), bottom[k], top[k]);
+    top_inner[k] = std::clamp(top_inner[k], middle, top[k]);
+    bottom_inner[k] = std::clamp(bottom_inner[k], bottom[k], middle);
+  }
+  orbit = least_near(of_region("Brow", 1), top.array() + 30 * degree);
+  orbit = (orbit.array() - degree).matrix().cwiseMax(top + VectorXd::Constant(stations, 14 * degree));
+  orbit = orbit.cwiseMin(top + VectorXd::Constant(stations, 34 * degree));
+
+  nearness_.setZero(head.volume.V.rows());
+  for (const int v : head.skin_vertices) {
+    const Vector3d X = head.volume.V.row(v).transpose(), d = X - eye_.centre;
+    const double distance = d.norm();
+    if (distance > eye_.radius + 0.026) continue;
+    const Place p = place(X);
+    if (distance < eye_.radius + 0.010) near_.emplace_back(v, distance);
     if (distance < eye_.radius + 0.0015) nearness_[v] = 1;
-    if ((X - eye_.centre).dot(ahead_) < 0.15 * eye_.radius) continue;
-    LidVertex lid{v, across(X), elevation(X), 0, 0, distance, true, X};
-    const double top = sample(upper_angle_, lid.across), bottom = sample(lower_angle_, lid.across);
-    lid.upper = lid.elevation > 0.5 * (top + bottom);
-    const double beyond = lid.upper ? lid.elevation - top : bottom - lid.elevation;
-    const double aside = std::max({0.0, -lid.across, lid.across - 1}) * length;
-    const double near = 1 - smoothstep(0.004, 0.009, distance - eye_.radius);
-    lid.follow =
-        (1 - smoothstep(6 * degree, (lid.upper ? 66 : 55) * degree, beyond)) * (1 - smoothstep(0, 0.006, aside));
-    lid.weight = 8 * (1 - smoothstep(10 * degree, 48 * degree, beyond)) * near * (1 - smoothstep(0.001, 0.006, aside));
-    lid.flat = std::min(distance, margin_height(lid.upper ? upper : lower, std::clamp(lid.across, 0.0, 1.0)) + 0.0003);
-    nearness_[v] = std::max(nearness_[v], std::min(1.0, lid.weight / 4));
-    if (lid.weight > 0) vertices_.push_back(lid);
+    if (d.dot(ahead_) < 0.15 * eye_.radius) continue;
+    if (lead(p) > 0) {
+      nearness_[v] = std::max(nearness_[v], std::min(1.0, 2 * lead(p)));
+      led_.emplace_back(v, X);
+    } else if (p.elevation > sample(orbit, p.across) && p.across > -0.5 && p.across < 1.4) {
+      brow_.emplace_back(v, X);
+    }
   }
 }
 
-double LidControl::elevation(const Vector3d& p) const {
-  const Vector3d d = p - eye_.centre;
-  return std::atan2(d.dot(up_), d.dot(ahead_));
+LidControl::Place LidControl::place(const Vector3d& X) const {
+  const Vector3d d = X - eye_.centre;
+  return {(X - inner_).dot(axis_) / length_, std::atan2(d.dot(up_), d.dot(ahead_)), d.norm()};
+}
+
+LidControl::Fissure LidControl::fissure(double across) const {
+  return {sample(curves_[0], across), sample(curves_[1], across), sample(curves_[2], across),
+          sample(curves_[3], across), sample(curves_[4], across)};
+}
+
+LidControl::Fissure LidControl::moved(const Fissure& rest, const LidMotion& motion) const {
+  const double open = rest.upper - rest.lower;
+  Fissure f = rest;
+  f.upper -= motion.upper * open;
+  f.lower += motion.lower * open;
+  const double least = std::min(closed_margins, 0.5 * open);
+  if (f.upper - f.lower < least) {  // margins that meet press against each other halfway
+    const double meeting = 0.5 * (f.upper + f.lower);
+    f.upper = meeting + 0.5 * least;
+    f.lower = meeting - 0.5 * least;
+  }
+  const double margins = rest.upper - rest.upper_inner + rest.lower_inner - rest.lower;
+  const double gap = std::min({closed_gap, rest.upper_inner - rest.lower_inner, 0.4 * (f.upper - f.lower)});
+  const double share = margins > 0 ? std::min(1.0, (f.upper - f.lower - gap) / margins) : 1;
+  f.upper_inner = f.upper - share * (rest.upper - rest.upper_inner);
+  f.lower_inner = f.lower + share * (rest.lower_inner - rest.lower);
+  return f;
+}
+
+double LidControl::lead(const Place& p) const {
+  const Fissure f = fissure(p.across);
+  const double aside = std::max({0.0, -p.across, p.across - 1}) * length_;
+  const double beside = 1 - smoothstep(0.001, 0.006, aside);
+  if (p.elevation > f.upper)
+    return beside * (1 - smoothstep(0.006, 0.011, p.distance - eye_.radius)) *
+           (1 - smoothstep(0.7 * (f.orbit - f.upper), f.orbit - f.upper, p.elevation - f.upper));
+  return beside * (1 - smoothstep(0.004, 0.009, p.distance - eye_.radius)) *
+         (1 - smoothstep(10 * degree, 48 * degree, f.lower - p.elevation));
 }
 
 Vector3d LidControl::gaze(const LidMotion& motion) const {
@@ -117,30 +195,52 @@ Vector3d LidControl::gaze(const LidMotion& motion) const {
          (Eigen::AngleAxisd(-motion.bulge_up * degree, Vector3d::UnitX()) * Vector3d::UnitZ());
 }
 
-std::vector<Handle> LidControl::handles(const LidMotion& motion) const {
-  const Vector3d look = gaze(motion);
+Vector3d LidControl::carried(const Vector3d& X, const LidMotion& motion) const {
+  const Place p = place(X);
+  const Fissure from = fissure(p.across), to = moved(from, motion);
+  const double aside = std::max({0.0, -p.across, p.across - 1}) * length_;
+  double follow = 1 - smoothstep(0, 0.006, aside), turn = 0, distance = p.distance;
+  const auto between = [&](double a, double b, double a_to, double b_to) {
+    const double t = b > a ? (p.elevation - a) / (b - a) : 0.5;
+    return a_to + t * (b_to - a_to) - p.elevation;
+  };
+  if (p.elevation >= from.upper) {
+    const double beyond = p.elevation - from.upper, room = from.orbit - from.upper;
+    const bool closes = to.upper < from.upper;
+    // Closing unfolds the skin below the brow; opening takes the brow's surroundings along.
+    follow *= closes ? 1 - unfold(std::min(tarsus, 0.3 * room), room, beyond)
+                     : 1 - smoothstep(6 * degree, 66 * degree, beyond);
+    turn = to.upper - from.upper;
+    // The fold above the eye unrolls and lies flat on the globe.
+    const double flat = std::min(distance, sample(upper_height_, p.across) + 0.0003);
+    if (closes) distance += smoothstep(0, 25 * degree, follow * -turn) * (flat - distance);
+  } else if (p.elevation <= from.lower) {
+    follow *= 1 - smoothstep(6 * degree, cheek_reach, from.lower - p.elevation);
+    turn = to.lower - from.lower;
+    const double flat = std::min(distance, sample(lower_height_, p.across) + 0.0003);
+    if (turn > 0) distance += smoothstep(0, 25 * degree, follow * turn) * (flat - distance);
+  } else if (p.elevation > from.upper_inner) {
+    turn = between(from.upper_inner, from.upper, to.upper_inner, to.upper);
+  } else if (p.elevation < from.lower_inner) {
+    turn = between(from.lower, from.lower_inner, to.lower, to.lower_inner);
+  } else {
+    turn = between(from.lower_inner, from.upper_inner, to.lower_inner, to.upper_inner);
+  }
   // Turning about axis_ by a positive angle lifts when axis_ x ahead_ points up.
   const double lift = axis_.cross(ahead_).dot(up_) > 0 ? 1 : -1;
+  const Vector3d before = (X - eye_.centre).normalized();
+  const Eigen::AngleAxisd sideways(sign_ * motion.sideways * follow * degree, Vector3d::UnitY());
+  const Vector3d direction = sideways * (Eigen::AngleAxisd(lift * follow * turn, axis_) * before);
+  distance += eye_.bulge(direction, gaze(motion)) - eye_.bulge(before, Vector3d::UnitZ());
+  return eye_.centre + distance * direction;
+}
+
+std::vector<Handle> LidControl::handles(const LidMotion& motion) const {
   std::vector<Handle> result;
-  for (const LidVertex& v : vertices_) {
-    const double fissure = sample(upper_angle_, v.across) - sample(lower_angle_, v.across);
-    const double turn = v.upper ? -motion.upper * fissure : motion.lower * fissure;
-    Vector3d d = Eigen::AngleAxisd(lift * v.follow * turn, axis_) * (v.rest - eye_.centre);
-    d = Eigen::AngleAxisd(sign_ * motion.sideways * v.follow * degree, Vector3d::UnitY()) * d;
-    // The fold above the eye unrolls and lies flat on the globe.
-    const double drawn = smoothstep(0, 25 * degree, std::abs(v.follow * turn)) * ((turn < 0) == v.upper ? 1 : 0);
-    d *= 1 - drawn * (1 - v.flat / (v.rest - eye_.centre).norm());
-    if (v.follow > 0.5 && motion.upper + motion.lower > 0.9) {  // neither lid passes the line where they meet
-      const double meeting = sample(lower_angle_, v.across) + closed_at * fissure;
-      const double at = std::atan2(d.dot(up_), d.dot(ahead_));
-      const double gap = std::min(half_gap, 0.1 * fissure);
-      const double past = v.upper ? meeting + gap - at : at - meeting + gap;
-      if (past > 0) d = Eigen::AngleAxisd(lift * (v.upper ? past : -past), axis_) * d;
-    }
-    const Vector3d direction = d.normalized(), before = (v.rest - eye_.centre).normalized();
-    d += direction * (eye_.bulge(direction, look) - eye_.bulge(before, Vector3d::UnitZ()));
-    result.push_back({v.vertex, eye_.centre + d, v.weight});
-  }
+  for (const auto& [vertex, rest] : led_) result.push_back({vertex, carried(rest, motion), 8 * lead(place(rest))});
+  const double hold = 4 * smoothstep(0, 0.3, motion.upper);
+  if (hold > 0)
+    for (const auto& [vertex, rest] : brow_) result.push_back({vertex, rest, hold});
   return result;
 }
 
@@ -161,14 +261,33 @@ Obstacle LidControl::eyeball(const LidMotion& motion) const {
   return obstacle;
 }
 
-void LidControl::lift_off(const MatrixX3d& rest, MatrixX3d& displacement, const LidMotion& motion) const {
+double LidControl::exact(const Vector3d& X) const {
+  const Vector3d d = X - eye_.centre;
+  const double distance = d.norm();
+  if (distance > eye_.radius + 0.006 || d.dot(ahead_) < 0.15 * eye_.radius) return 0;
+  const Place p = place(X);
+  const Fissure f = fissure(p.across);
+  const double beyond = std::max({0.0, p.elevation - f.upper, f.lower - p.elevation});
+  // The lining that lies on the eyeball goes with the lids as deep as they reach, the skin outside only at the edge.
+  const double depth = distance < eye_.radius + 0.0012 ? 40 * degree : 8 * degree;
+  return lead(p) * (1 - smoothstep(0.3 * depth, depth, beyond));
+}
+
+void LidControl::mark_settled(const MatrixX3d& rest, std::vector<char>& marks) const {
+  for (Eigen::Index v = 0; v < rest.rows(); ++v)
+    if (exact(rest.row(v)) > 0.9) marks[static_cast<std::size_t>(v)] = 1;
+}
+
+void LidControl::settle(const MatrixX3d& rest, MatrixX3d& displacement, const LidMotion& motion) const {
   const Vector3d look = gaze(motion);
   for (Eigen::Index v = 0; v < rest.rows(); ++v) {
     const Vector3d X = rest.row(v);
     const double distance = (X - eye_.centre).norm();
-    if (distance > eye_.radius + 0.002) continue;
-    const Vector3d x = X + displacement.row(v).transpose();
-    displacement.row(v) += (outside(x, distance, look) - x).transpose();
+    if (distance > eye_.radius + 0.006) continue;
+    Vector3d x = X + displacement.row(v).transpose();
+    if (const double share = exact(X); share > 0) x += share * (carried(X, motion) - x);
+    if (distance < eye_.radius + 0.002) x = outside(x, distance, look);
+    displacement.row(v) = (x - X).transpose();
   }
 }
 

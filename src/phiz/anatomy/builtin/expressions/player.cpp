@@ -17,7 +17,6 @@ namespace {
 constexpr int iterations = 30;
 constexpr int smoothing_passes = 4;
 constexpr double lip_gap = 0.00025;  ///< metres; half of what they leave at rest, so that left and right can be added
-constexpr double lid_gap = 0.00004;  ///< metres
 
 /// Evens out displacements D (one row per vertex of V) where `calm` (0 to 1 per row) allows: tets are irregular, skin
 /// is not. Cotangent weights, so that the pattern of the triangles leaves no trace.
@@ -43,23 +42,25 @@ VectorXd uprightness(const MatrixX3d& V, const MatrixX3i& F) {
 }
 
 /// Smooths the displacement round triangles that it folds over, or nearly so when they are not at rest, until there are
-/// none or 40 rounds are over; farther and farther round those that resist.
-void mend_folds(const TriangleMesh& skin, const std::vector<std::vector<int>>& neighbours, MatrixX3d& D) {
+/// none or 40 rounds are over; farther and farther round those that resist. Vertices with `kept` stay as they are.
+void mend_folds(const TriangleMesh& skin, const std::vector<std::vector<int>>& neighbours,
+                const std::vector<char>& kept, MatrixX3d& D) {
   const VectorXd at_rest = uprightness(skin.V, skin.F);
+  const auto add = [&kept](std::set<int>& set, int v) {
+    if (!kept[static_cast<std::size_t>(v)]) set.insert(v);
+  };
   for (int round = 0; round < 40; ++round) {
     const VectorXd now = uprightness(skin.V + D, skin.F);
     std::set<int> touched;
     for (Eigen::Index f = 0; f < skin.F.rows(); ++f) {
       if (now[f] >= (at_rest[f] > 0.4 ? 0.15 : 0.0)) continue;
-      for (int k = 0; k < 3; ++k) touched.insert(skin.F(f, k));
+      for (int k = 0; k < 3; ++k) add(touched, skin.F(f, k));
     }
     if (touched.empty()) return;
     for (int ring = 0; ring <= round / 10; ++ring) {
       const std::set<int> inner = touched;
-      for (const int v : inner) {
-        const auto& next = neighbours[static_cast<std::size_t>(v)];
-        touched.insert(next.begin(), next.end());
-      }
+      for (const int v : inner)
+        for (const int w : neighbours[static_cast<std::size_t>(v)]) add(touched, w);
     }
     const MatrixX3d before = D;
     for (const int v : touched) {
@@ -81,7 +82,6 @@ ExpressionPlayer::ExpressionPlayer(const HeadTemplate& head, const Proportions& 
       left_lids_(head, {head.left_eye_centre, proportions.eye_radius}, "left"),
       right_lids_(head, {head.right_eye_centre, proportions.eye_radius}, "right"),
       lip_contact_(head, "upperLip", "lowerLip", lip_gap),
-      left_lid_contact_(head, "leftUpperLid", "leftLowerLid", lid_gap),
       neighbours_(vertex_neighbours(head.skin.F, static_cast<int>(head.skin.V.rows()))) {}
 
 MatrixX3d ExpressionPlayer::posed(const ExpressionRecipe& recipe, const JawPose& pose, const MatrixX3d& guess,
@@ -117,12 +117,14 @@ MatrixX3d ExpressionPlayer::play(const ExpressionRecipe& recipe) const {
   MatrixX3d drawn = head_.skin_interpolation * D(head_.skin_vertices, Eigen::all);
   if (recipe.closed) seal_lips(head_, drawn);
   lip_contact_.keep_apart(drawn);
-  left_lid_contact_.keep_apart(drawn);
+  std::vector<char> kept(static_cast<std::size_t>(drawn.rows()), 0);  // pressed lids look folded, and are right
+  left_lids_.mark_settled(head_.skin.V, kept);
+  right_lids_.mark_settled(head_.skin.V, kept);
   const LidMotion other = recipe.paired ? LidMotion{} : recipe.lids;
   for (int round = 0; round < 2; ++round) {  // each may undo a little of the other
-    left_lids_.lift_off(head_.skin.V, drawn, recipe.lids);
-    right_lids_.lift_off(head_.skin.V, drawn, other);
-    mend_folds(head_.skin, neighbours_, drawn);
+    left_lids_.settle(head_.skin.V, drawn, recipe.lids);
+    right_lids_.settle(head_.skin.V, drawn, other);
+    mend_folds(head_.skin, neighbours_, kept, drawn);
   }
   return drawn;
 }

@@ -31,8 +31,8 @@ class ExpressionPlayer {
   MusclePulls pulls_;
   LipControl lips_;
   LidControl left_lids_, right_lids_;
-  PatchContact lip_contact_, left_lid_contact_;  // only left lids are played
-  std::vector<std::vector<int>> neighbours_;     ///< of the vertices of head.skin
+  PatchContact lip_contact_;
+  std::vector<std::vector<int>> neighbours_;  ///< of the vertices of head.skin
 };
 
 }  // namespace phiz

@@ -11,8 +11,8 @@ std::vector<ExpressionRecipe> eye_recipes() {
       // AU45: the upper lid does most of the way.
       {.name = "eyeBlinkLeft",
        .paired = true,
-       .pulls = {{"orbicularisOculi", 0.03, Part::upper, 0.2, 1}, {"orbicularisOculi", 0.03, Part::lower, 0.2, 1}},
-       .lids = {.upper = 0.86, .lower = 0.14}},
+       .pulls = {{"orbicularisOculi", 0.03, Part::lower, 0.2, 1}},
+       .lids = {.upper = 0.88, .lower = 0.12}},
       // The lids follow the gaze.
       {.name = "eyeLookDownLeft", .paired = true, .lids = {.upper = 0.38, .lower = -0.18, .bulge_up = -30}},
       {.name = "eyeLookUpLeft",
@@ -25,7 +25,7 @@ std::vector<ExpressionRecipe> eye_recipes() {
       {.name = "eyeSquintLeft",
        .paired = true,
        .pulls = {{"orbicularisOculi", 0.10, Part::lower, 0, 0.8}, {"orbicularisOculi", 0.04, Part::upper, 0, 1}},
-       .lids = {.upper = 0.16, .lower = 0.32}},
+       .lids = {.upper = 0.06, .lower = 0.24}},
       // AU5
       {.name = "eyeWideLeft", .paired = true, .pulls = {{"frontalis", 0.02}}, .lids = {.upper = -0.31, .lower = -0.09}},
       // AU6: the outer ring gathers the cheek under the eye.
@@ -35,7 +35,7 @@ std::vector<ExpressionRecipe> eye_recipes() {
                  {"orbicularisOculi", 0.05, Part::upper, 0.5, 1},
                  {"zygomaticusMinor", 0.05},
                  {"levatorLabiiSuperioris", 0.03}},
-       .lids = {.upper = 0.04, .lower = 0.20},
+       .lids = {.lower = 0.10},
        .closed = true},
   };
 }
@@ -65,7 +65,7 @@ std::vector<ExpressionRecipe> brow_and_nose_recipes() {
                  {"procerus", 0.22, Part::left},
                  {"corrugator", 0.05}},
        .upper_lip = {{.up = 1.4}, {.up = 2.4}, {.up = 1.2}, 0.6},
-       .lids = {.lower = 0.10}},
+       .lids = {.lower = 0.06}},
   };
 }
 
@@ -173,7 +173,7 @@ std::vector<ExpressionRecipe> mouth_pull_recipes() {
            {{.up = 0.8, .out = -0.6}, {.up = 2.6, .out = -1.8, .wide = 2.5}, {.up = 8, .out = -6, .wide = 7}, 0.6},
        .lower_lip =
            {{.up = 0.3, .out = -0.5}, {.up = 2.2, .out = -1.6, .wide = 2.5}, {.up = 8, .out = -6, .wide = 7}, 0.6},
-       .lids = {.upper = 0.02, .lower = 0.10},
+       .lids = {.lower = 0.06},
        .closed = true},
       // AU15
       {.name = "mouthFrownLeft",
