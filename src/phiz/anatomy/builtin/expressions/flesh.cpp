@@ -18,6 +18,8 @@ constexpr double rigidity = 1.0;            ///< weight of |F - R|^2
 constexpr double incompressibility = 20.0;  ///< weight of |F - P|^2, P the nearest matrix of determinant 1
 constexpr double dermis = 8;                ///< stiffness of tets with a face on the skin, relative to the flesh below
 
+constexpr double sideways_hold = 0.15;  ///< share of a pull's weight across its direction
+
 /// Rotation of the polar decomposition of F, from the estimate `q` (Mueller et al. 2016).
 void follow_rotation(const Matrix3d& F, Eigen::Quaterniond& q) {
   for (int i = 0; i < 4; ++i) {
@@ -151,8 +153,9 @@ const VectorXd& FleshPoser::jaw_share() const {
   return state_->jaw_share;
 }
 
-MatrixX3d FleshPoser::pose(const std::vector<Handle>& handles, const std::vector<Obstacle>& obstacles,
-                           const Eigen::Isometry3d& jaw, int iterations, const MatrixX3d& guess) const {
+MatrixX3d FleshPoser::pose(const std::vector<Handle>& handles, const std::vector<Pull>& pulls,
+                           const std::vector<Obstacle>& obstacles, const Eigen::Isometry3d& jaw, int iterations,
+                           const MatrixX3d& guess) const {
   const State& s = *state_;
   const auto n = static_cast<Eigen::Index>(s.free.size());
   VectorXd springs = VectorXd::Zero(n);
@@ -164,6 +167,8 @@ MatrixX3d FleshPoser::pose(const std::vector<Handle>& handles, const std::vector
     springs[row] += k;
     pull.row(row) += k * h.target.transpose();
   }
+  for (const Pull& p : pulls)
+    if (s.unknown[p.vertex] >= 0) springs[s.unknown[p.vertex]] += p.weight * s.diagonal[s.unknown[p.vertex]];
   for (const Obstacle& o : obstacles)
     for (const int v : o.vertices)
       if (s.unknown[v] >= 0) springs[s.unknown[v]] += o.weight * s.diagonal[s.unknown[v]];
@@ -197,6 +202,13 @@ MatrixX3d FleshPoser::pose(const std::vector<Handle>& handles, const std::vector
       }
     });
     MatrixX3d loads = pull;
+    for (const Pull& p : pulls) {
+      const int row = s.unknown[p.vertex];
+      if (row < 0) continue;
+      const Vector3d x = X.row(p.vertex), way = p.target - x;
+      const Vector3d there = x + sideways_hold * way + (1 - sideways_hold) * p.direction.dot(way) * p.direction;
+      loads.row(row) += (p.weight * s.diagonal[row]) * there.transpose();
+    }
     for (const Obstacle& o : obstacles)
       for (std::size_t k = 0; k < o.vertices.size(); ++k) {
         const int row = s.unknown[o.vertices[k]];

@@ -20,6 +20,15 @@ struct Handle {
   double weight = 1;
 };
 
+/// A vertex that a muscle draws: its place along `direction` (unit) is pulled to `target`, across it is nearly
+/// free, so that flesh which is shortened may thicken. `weight` as for a handle.
+struct Pull {
+  int vertex = -1;
+  Vector3d target = Vector3d::Zero();
+  Vector3d direction = Vector3d::UnitX();
+  double weight = 1;
+};
+
 /// Vertices that must stay out of something rigid (teeth, eyeball). `allowed(k, x)` returns the nearest allowed place
 /// for vertices[k] at x: x itself when it touches nothing. It is asked in every iteration.
 struct Obstacle {
@@ -40,8 +49,9 @@ class FleshPoser {
 
   /// Positions of all vertices (metres, n x 3), after `iterations` local/global steps from `guess` (such positions),
   /// or from a smooth first guess when it is empty.
-  MatrixX3d pose(const std::vector<Handle>& handles, const std::vector<Obstacle>& obstacles,
-                 const Eigen::Isometry3d& jaw, int iterations, const MatrixX3d& guess = {}) const;
+  MatrixX3d pose(const std::vector<Handle>& handles, const std::vector<Pull>& pulls,
+                 const std::vector<Obstacle>& obstacles, const Eigen::Isometry3d& jaw, int iterations,
+                 const MatrixX3d& guess = {}) const;
 
   /// Share with which each vertex follows the mandible: 1 on it, 0 on the skull, harmonic between (n).
   const VectorXd& jaw_share() const;

@@ -15,17 +15,20 @@ constexpr int stations = 65;
 constexpr double meeting_share = 0.36;  ///< of the jaw's way down, at which sealed lips meet
 constexpr double retreat_share = 0.15;  ///< of its way back: the upper teeth hold them in front
 
-/// Through the values at the centre, halfway and the corner; even and smooth across the centre, but for `wide`, which
-/// is odd: positive to the person's left.
+/// Through the values at the centre, halfway and the corner; even and smooth across the centre, but for `wide` and
+/// `turn`, which are odd: positive to the person's left.
 LipSection section(const LipMotion& m, double along) {
   const double q = std::min(1.0, along * along), a = (1 - q) * (0.25 - q) / 0.25, b = q * (1 - q) / 0.1875,
                c = q * (q - 0.25) / 0.75;
-  const auto mix = [&](double LipSection::*field) {
+  const auto even = [&](double LipSection::*field) {
     return a * m.centre.*field + b * m.middle.*field + c * m.corner.*field;
   };
-  const double near = (m.middle.wide - 0.125 * m.corner.wide) / 0.375, far = m.corner.wide - near;
-  return {mix(&LipSection::up),   mix(&LipSection::out),  std::clamp(along, -1.0, 1.0) * (near + far * q),
-          mix(&LipSection::left), mix(&LipSection::roll), mix(&LipSection::thin)};
+  const auto odd = [&](double LipSection::*field) {
+    const double near = (m.middle.*field - 0.125 * m.corner.*field) / 0.375, far = m.corner.*field - near;
+    return std::clamp(along, -1.0, 1.0) * (near + far * q);
+  };
+  return {even(&LipSection::up),  even(&LipSection::out),  odd(&LipSection::wide), even(&LipSection::left),
+          odd(&LipSection::turn), even(&LipSection::roll), even(&LipSection::thin)};
 }
 
 /// A curve from corner to corner resampled at `stations` places, even in x, right corner first.
@@ -55,6 +58,7 @@ LipControl::LipControl(const HeadTemplate& head) {
   const std::vector<char> in_upper = simulation_mask(head, {"upperLip", "upperLipInner"});
   const std::vector<char> in_lower = simulation_mask(head, {"lowerLip", "lowerLipInner"});
   const std::vector<char> red = simulation_mask(head, {"upperLip", "lowerLip"});
+  const std::vector<char> lining = simulation_mask(head, {"upperLipInner", "lowerLipInner", "mouthBag"});
   std::vector<int> red_vertices;
   for (std::size_t i = 0; i < red.size(); ++i)
     if (red[i]) red_vertices.push_back(head.skin_vertices[static_cast<Eigen::Index>(i)]);
@@ -69,7 +73,9 @@ LipControl::LipControl(const HeadTemplate& head) {
     const double grip = std::pow(1 - smoothstep(0.002, 0.016, distance), 2);
     if (grip <= 0 || head.carrier[v] != static_cast<int>(Carrier::flesh)) continue;
     LipVertex entry{v, std::clamp((X.x() - centre) / half, -1.2, 1.2), grip, 0, 0, true, X};
-    entry.follow = 1 - smoothstep(0.002, 0.024, distance);
+    // The lining slides on gums and teeth: it follows from farther away than the skin does.
+    entry.follow =
+        1 - (lining[static_cast<std::size_t>(i)] ? smoothstep(0, 0.042, distance) : smoothstep(0.002, 0.024, distance));
     const auto k = static_cast<std::size_t>(i);
     entry.lip =
         red[k] ? 1
@@ -127,7 +133,7 @@ std::vector<Handle> LipControl::handles(const ExpressionRecipe& recipe, const Ei
     const Vector3d thinned = v.rest - side * v.lip * m.thin * (v.rest - f.middle).dot(f.up) * f.up;
     const Vector3d rolled = axis_point + Eigen::AngleAxisd(roll, f.along) * (thinned - axis_point);
     const Vector3d forward = (f.out + 2 * Vector3d::UnitZ()).normalized();
-    const Vector3d way = m.up * f.up + m.out * forward + (m.wide + m.left) * Vector3d::UnitX();
+    const Vector3d way = m.up * f.up + (m.out - m.turn) * forward + (m.wide + m.left) * Vector3d::UnitX();
     const Vector3d moved = rolled + side * v.follow * mm * way;
     // The lower lip rides on the jaw, less so towards the corners.
     const double ride = v.upper ? 0.5 * q * q : 1 - 0.5 * q * q;

@@ -92,21 +92,24 @@ MusclePulls::MusclePulls(const HeadTemplate& head) : rest_(head.volume.V) {
   }
 }
 
-Vector3d MusclePulls::displacement(const Bundle& bundle, const Reach& reach, double shortening) const {
+Pull MusclePulls::pull(const Bundle& bundle, const Reach& reach, double shortening) const {
   const MatrixX3d& fibre = bundle.fibres[static_cast<std::size_t>(reach.fibre)];
   const VectorXd arc = arc_lengths(fibre);
-  const Vector3d here = point_at(fibre, arc, reach.along);
-  if (!bundle.ring) return point_at(fibre, arc, reach.along * (1 - shortening)) - here;
-  const Vector3d inward = bundle.centre - here;
-  return shortening * Vector3d(inward.x(), inward.y(), 0.3 * inward.z());
+  const Vector3d here = point_at(fibre, arc, reach.along), X = rest_.row(reach.vertex);
+  if (bundle.ring) {
+    const Vector3d inward = (bundle.centre - here).cwiseProduct(Vector3d(1, 1, 0.3));
+    return {reach.vertex, X + shortening * inward, inward.normalized()};
+  }
+  const Vector3d ahead = point_at(fibre, arc, reach.along + 0.05), behind = point_at(fibre, arc, reach.along - 0.05);
+  return {reach.vertex, X + point_at(fibre, arc, reach.along * (1 - shortening)) - here, (ahead - behind).normalized()};
 }
 
-std::vector<Handle> MusclePulls::handles(const ExpressionRecipe& recipe) const {
+std::vector<Pull> MusclePulls::pulls(const ExpressionRecipe& recipe) const {
   std::map<std::string, bool> known;
   for (const auto& [name, bundle] : bundles_) known[name] = true;
-  std::vector<Handle> result;
-  for (const MusclePull& pull : recipe.pulls) {
-    const std::string name = full_name(recipe, pull.muscle, known);
+  std::vector<Pull> result;
+  for (const MusclePull& shortened : recipe.pulls) {
+    const std::string name = full_name(recipe, shortened.muscle, known);
     const auto found = bundles_.find(name);
     if (found == bundles_.end())
       reject("expression '" + std::string(recipe.name) + "'", "the head has no muscle '" + name + "'",
@@ -117,15 +120,17 @@ std::vector<Handle> MusclePulls::handles(const ExpressionRecipe& recipe) const {
       const Vector3d X = rest_.row(reach.vertex);
       // Active fibres, with a soft edge of a fifth of the width.
       const double fibre = reach.fibre / last;
-      double active = smoothstep(pull.from - 0.2, pull.from, fibre) * (1 - smoothstep(pull.to, pull.to + 0.2, fibre));
-      if (pull.part == MusclePull::Part::upper) active *= smoothstep(-0.003, 0.004, X.y() - bundle.centre.y());
-      if (pull.part == MusclePull::Part::lower) active *= smoothstep(-0.003, 0.004, bundle.centre.y() - X.y());
-      if (pull.part == MusclePull::Part::left) active *= smoothstep(-0.004, 0.003, X.x());
+      double active = smoothstep(shortened.from - 0.2, shortened.from, fibre) *
+                      (1 - smoothstep(shortened.to, shortened.to + 0.2, fibre));
+      if (shortened.part == MusclePull::Part::upper) active *= smoothstep(-0.003, 0.004, X.y() - bundle.centre.y());
+      if (shortened.part == MusclePull::Part::lower) active *= smoothstep(-0.003, 0.004, bundle.centre.y() - X.y());
+      if (shortened.part == MusclePull::Part::left) active *= smoothstep(-0.004, 0.003, X.x());
       // Held by the bone at the origin, by the skin at the insertion.
       const double grip = bundle.ring ? 1 : 0.15 + 0.85 * smoothstep(0, 0.8, reach.along);
       const double weight = pull_weight * reach.weight * active * grip;
       if (weight <= 1e-4) continue;
-      result.push_back({reach.vertex, X + displacement(bundle, reach, pull.shortening), weight});
+      result.push_back(pull(bundle, reach, shortened.shortening));
+      result.back().weight = weight;
     }
   }
   return result;

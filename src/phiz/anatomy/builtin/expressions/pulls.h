@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Shortening muscles as handles: tissue at arc length s of a fibre moves along the fibre towards the origin by its
+/// Shortening muscles: tissue at arc length s of a fibre moves along the fibre towards the origin by its
 /// share of the shortening; a ring draws together.
 #pragma once
 
@@ -18,9 +18,9 @@ class MusclePulls {
   /// Uses the fibres of head.muscles; flesh vertices within 12 mm of a fibre go with it.
   explicit MusclePulls(const HeadTemplate& head);
 
-  /// Handles of all pulls of a recipe. In a paired recipe names without a side mean the left muscle.
+  /// What the muscles of a recipe draw. In a paired recipe names without a side mean the left muscle.
   /// Throws phiz::Error(bad_input) naming a muscle that the head does not have.
-  std::vector<Handle> handles(const ExpressionRecipe& recipe) const;
+  std::vector<Pull> pulls(const ExpressionRecipe& recipe) const;
 
  private:
   /// A vertex in the reach of a muscle: the nearest fibre and the place on it.
@@ -36,7 +36,7 @@ class MusclePulls {
     Vector3d centre;
     bool ring;
   };
-  Vector3d displacement(const Bundle& bundle, const Reach& reach, double shortening) const;
+  Pull pull(const Bundle& bundle, const Reach& reach, double shortening) const;
 
   MatrixX3d rest_;
   std::map<std::string, Bundle> bundles_;

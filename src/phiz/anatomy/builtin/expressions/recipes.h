@@ -27,6 +27,7 @@ struct LipSection {
   double out = 0;   ///< mm, away from the teeth
   double wide = 0;  ///< mm, away from the midline; none at the centre
   double left = 0;  ///< mm, towards the person's left
+  double turn = 0;  ///< mm, the left side back and the right side forward; none at the centre
   double roll = 0;  ///< degrees about the lip's length: positive turns the red outward, negative tucks it in
   double thin = 0;  ///< share by which the height of the red shrinks towards the parting line; negative: fuller
 };
@@ -44,13 +45,26 @@ struct LidMotion {
   double bulge_up = 0, bulge_side = 0;  ///< gaze (degrees) whose cornea pushes the lids out
 };
 
+/// Where skin dips or stands out as flesh is gathered.
+enum class Fold {
+  nasolabial,  ///< from the wing of the nose round the corner of the mouth
+  marionette,  ///< from the corner of the mouth down
+  dimple,      ///< beside the corner of the mouth
+  malar,       ///< no crease: the fat of the cheek under the eye
+};
+struct FoldDepth {
+  Fold fold;
+  double depth = 0;  ///< mm
+};
+
 struct ExpressionRecipe {
   std::string_view name;     ///< the left one of a pair
   bool paired = false;       ///< also made for the right side, by reflection
   bool both_halves = false;  ///< a paired recipe that moves the lips of both halves all the same
   std::vector<MusclePull> pulls{};
   LipMotion upper_lip{}, lower_lip{};
-  LidMotion lids{};                                    ///< of the left eye
+  LidMotion lids{};  ///< of the left eye
+  std::vector<FoldDepth> folds{};
   double open = 0, swing = 0;                          ///< jaw, radians
   double jaw_down = 0, jaw_forward = 0, jaw_side = 0;  ///< jaw, mm
   double puff = 0;                                     ///< mm by which air in the mouth pushes the cheeks out

@@ -11,7 +11,8 @@
 namespace phiz {
 namespace {
 
-constexpr double reach = 0.012;  ///< of the skin round the lips that follows, metres
+constexpr double reach = 0.012;   ///< of the skin round the lips that follows, metres
+constexpr double alike = 0.0018;  ///< within which both lips move alike, metres
 
 /// How far up the point of the line `loop` at `x` moves, metres.
 double rise(const HeadTemplate& head, const VectorXi& loop, const MatrixX3d& displacement, double x) {
@@ -24,16 +25,60 @@ double rise(const HeadTemplate& head, const VectorXi& loop, const MatrixX3d& dis
   return sum / weights;
 }
 
+/// 1 upper, 2 lower, 3 both: the corners and the crease behind them; per vertex of head.skin.
+std::vector<char> lip_sides(const HeadTemplate& head) {
+  std::vector<char> side(static_cast<std::size_t>(head.skin.V.rows()), 0);
+  for (const auto& [name, bit] :
+       {std::pair{"upperLip", 1}, {"upperLipInner", 1}, {"lowerLip", 2}, {"lowerLipInner", 2}})
+    if (const auto found = head.skin_regions.find(name); found != head.skin_regions.end())
+      for (const int v : found->second) side[static_cast<std::size_t>(v)] |= static_cast<char>(bit);
+  return side;
+}
+
+/// Lets both lips move alike where they lie against one another, in the corners too, where they are one.
+void join(const HeadTemplate& head, const std::vector<char>& side, MatrixX3d& displacement) {
+  std::vector<int> seam, upper, lower;
+  for (const char* loop : {"loop:upperLipLine", "loop:lowerLipLine"})
+    for (const int v : head.skin_regions.at(loop)) seam.push_back(v);
+  for (int v = 0; v < head.skin.V.rows(); ++v) {
+    const char own = side[static_cast<std::size_t>(v)];
+    if ((own & 1) != 0) upper.push_back(v);
+    if ((own & 2) != 0) lower.push_back(v);
+    if (own == 3) seam.push_back(v);
+  }
+  const MatrixX3d line = head.skin.V(seam, Eigen::all), before = displacement;
+  const auto mean = [&](const std::vector<int>& lip, const Vector3d& X) {
+    Vector3d sum = Vector3d::Zero();
+    double weights = 1e-12;
+    for (const int v : lip) {
+      const double squared = (head.skin.V.row(v).transpose() - X).squaredNorm();
+      if (squared > 9 * alike * alike) continue;
+      const double w = std::exp(-squared / (alike * alike));
+      sum += w * before.row(v).transpose();
+      weights += w;
+    }
+    return Vector3d(sum / weights);
+  };
+  for (int v = 0; v < head.skin.V.rows(); ++v) {
+    const char own = side[static_cast<std::size_t>(v)];
+    if (own == 0) continue;
+    const Vector3d X = head.skin.V.row(v);
+    const double distance = std::sqrt((line.rowwise() - X.transpose()).rowwise().squaredNorm().minCoeff());
+    const double share = 1 - smoothstep(0.001, 0.006, distance), even = 1 - smoothstep(0.0005, 0.0025, distance);
+    if (share <= 0) continue;
+    const Vector3d above = mean(upper, X), below = mean(lower, X), both = 0.5 * (above + below);
+    Vector3d d = before.row(v).transpose();
+    if (own != 3) d += (own == 1 ? -0.5 : 0.5) * share * (above - below);
+    displacement.row(v) = ((1 - even) * d + even * both).transpose();
+  }
+}
+
 }  // namespace
 
 void seal_lips(const HeadTemplate& head, MatrixX3d& displacement) {
   const MatrixX3d line = skin_curve(head, "loop:upperLipLine");
   const VectorXi &upper = head.skin_regions.at("loop:upperLipLine"), &lower = head.skin_regions.at("loop:lowerLipLine");
-  std::vector<char> side(static_cast<std::size_t>(head.skin.V.rows()), 0);  // 1 upper, 2 lower, 3 both: the corners
-  for (const auto& [name, bit] :
-       {std::pair{"upperLip", 1}, {"upperLipInner", 1}, {"lowerLip", 2}, {"lowerLipInner", 2}})
-    if (const auto found = head.skin_regions.find(name); found != head.skin_regions.end())
-      for (const int v : found->second) side[static_cast<std::size_t>(v)] |= static_cast<char>(bit);
+  const std::vector<char> side = lip_sides(head);
   const MatrixX3d before = displacement;
   for (Eigen::Index v = 0; v < before.rows(); ++v) {
     const Vector3d X = head.skin.V.row(v);
@@ -47,6 +92,7 @@ void seal_lips(const HeadTemplate& head, MatrixX3d& displacement) {
     const double share = 0.5 * (1 - smoothstep(0.001, reach, std::sqrt(squared)));
     displacement(v, 1) += above ? -share * gap : share * gap;
   }
+  join(head, side, displacement);
 }
 
 }  // namespace phiz

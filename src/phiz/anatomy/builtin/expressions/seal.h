@@ -7,7 +7,8 @@
 namespace phiz {
 
 /// Draws the lips together where `displacement` (of head.skin, metres) parts them by more than at rest: both move half
-/// the way, the skin round them less and less. Needs the skin regions loop:upperLipLine and loop:lowerLipLine.
+/// the way, the skin round them less and less; where they touch they move alike. Needs the skin regions
+/// loop:upperLipLine and loop:lowerLipLine.
 void seal_lips(const HeadTemplate& head, MatrixX3d& displacement);
 
 }  // namespace phiz

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include "phiz/anatomy/builtin/ease.h"
+#include "phiz/anatomy/builtin/expressions/mirror.h"
 #include "phiz/anatomy/builtin/expressions/player.h"
 #include "phiz/anatomy/builtin/expressions/recipes.h"
 #include "phiz/anatomy/expression_names.h"
@@ -14,42 +14,6 @@
 
 namespace phiz {
 namespace {
-
-/// The partner of every vertex under reflection in x = 0: the nearest vertex to the reflected one.
-VectorXi mirror_partners(const MatrixX3d& V) {
-  std::vector<int> by_height(static_cast<std::size_t>(V.rows()));
-  std::iota(by_height.begin(), by_height.end(), 0);
-  std::sort(by_height.begin(), by_height.end(), [&](int a, int b) { return V(a, 1) < V(b, 1); });
-  VectorXi partner(V.rows());
-  for (int v = 0; v < V.rows(); ++v) {
-    const Vector3d wanted(-V(v, 0), V(v, 1), V(v, 2));
-    int best = v;
-    double least = 1e30;
-    const auto start =
-        std::lower_bound(by_height.begin(), by_height.end(), wanted.y(), [&](int a, double y) { return V(a, 1) < y; });
-    const auto look = [&](int candidate) {
-      const double d = (V.row(candidate).transpose() - wanted).squaredNorm();
-      if (d < least) {
-        least = d;
-        best = candidate;
-      }
-    };
-    for (auto up = start; up != by_height.end() && std::pow(V(*up, 1) - wanted.y(), 2) < least; ++up) look(*up);
-    for (auto down = start; down != by_height.begin();) {
-      --down;
-      if (std::pow(V(*down, 1) - wanted.y(), 2) >= least) break;
-      look(*down);
-    }
-    partner[v] = best;
-  }
-  return partner;
-}
-
-MatrixX3d reflected(const MatrixX3d& D, const VectorXi& partner) {
-  MatrixX3d result = D(partner, Eigen::all);
-  result.col(0) *= -1;
-  return result;
-}
 
 JawPose reflected(JawPose pose) {
   pose[1] = -pose[1];
@@ -68,7 +32,7 @@ void still_far_regions(MatrixX3d& D) {
 
 std::vector<Expression> make_expressions(const HeadTemplate& head, const Proportions& proportions) {
   const ExpressionPlayer player(head, proportions);
-  const VectorXi partner = mirror_partners(head.skin.V);
+  const VectorXi& partner = player.partners();
   std::map<std::string, Expression> made;
   MatrixX3d jaw_open;
   for (const ExpressionRecipe& recipe : expression_recipes()) {
