@@ -124,7 +124,7 @@ std::vector<Handle> LipControl::handles(const ExpressionRecipe& recipe, const Ei
     const double side = recipe.paired && !recipe.both_halves ? smoothstep(-0.3, 0.35, v.along) : 1;
     const double q = std::min(1.0, v.along * v.along);
     double weight = motion.hold * v.grip * side;
-    if (recipe.open > 0) weight *= 1 - q;  // the corners are free on an open jaw
+    if (recipe.open > 0) weight *= 1 - 0.8 * q;  // the corners are freer on an open jaw
     if (weight <= 0) continue;
     const LipSection m = section(motion, v.along);
     const Frame f = frame_at(v.along);
@@ -136,7 +136,9 @@ std::vector<Handle> LipControl::handles(const ExpressionRecipe& recipe, const Ei
     const Vector3d way = m.up * f.up + (m.out - m.turn) * forward + (m.wide + m.left) * Vector3d::UnitX();
     const Vector3d moved = rolled + side * v.follow * mm * way;
     // The lower lip rides on the jaw, less so towards the corners.
-    const double ride = v.upper ? 0.5 * q * q : 1 - 0.5 * q * q;
+    const double to_end = std::min(1.0, q / (1.05 * 1.05));  // the opening is round, and ends outside of the parting line
+    const double shared = 0.5 - 0.5 * std::sqrt(1 - to_end);
+    const double ride = v.upper ? shared : 1 - shared;
     result.push_back({v.vertex, (1 - ride) * moved + ride * (jaw * moved), weight});
   }
   return result;

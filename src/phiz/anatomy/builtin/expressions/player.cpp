@@ -52,6 +52,7 @@ MatrixX3d ExpressionPlayer::posed(const ExpressionRecipe& recipe, const JawPose&
   };
   const LidMotion other = recipe.paired ? LidMotion{} : recipe.lids;
   add(lips_.handles(recipe, jaw));
+  if (!pose.isZero()) add(floor_handles(head_, jaw));
   add(left_lids_.handles(recipe.lids));
   add(right_lids_.handles(other));
   if (recipe.puff != 0) add(puff_handles(head_, proportions_, recipe.puff * 1e-3));

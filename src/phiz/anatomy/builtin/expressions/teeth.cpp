@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "phiz/anatomy/builtin/expressions/skin.h"
+
 namespace phiz {
 namespace {
 
@@ -44,6 +46,17 @@ Obstacle dental_arches(const HeadTemplate& head, const Proportions::DentalArch& 
     return jaw * lower.lifted(jaw.inverse() * y, floors[k].second);
   };
   return obstacle;
+}
+
+std::vector<Handle> floor_handles(const HeadTemplate& head, const Eigen::Isometry3d& jaw) {
+  std::vector<Handle> handles;
+  const std::vector<char> floor = simulation_mask(head, {"oralFloor"});
+  for (std::size_t i = 0; i < floor.size(); ++i) {
+    const int v = head.skin_vertices[static_cast<Eigen::Index>(i)];
+    if (floor[i] && head.carrier[v] == static_cast<int>(Carrier::flesh))
+      handles.push_back({v, jaw * Vector3d(head.volume.V.row(v).transpose()), 0.6});
+  }
+  return handles;
 }
 
 }  // namespace phiz
