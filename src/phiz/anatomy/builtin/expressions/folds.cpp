@@ -22,24 +22,29 @@ struct Crease {
   double gather;  ///< its height as a share of the dip's depth
 };
 
-/// Height at p per unit of depth.
+/// Height at p per unit of depth. Where p lies along and across of the line is a mean over the pieces of the line with
+/// more weight on the near ones: the nearest piece alone would jump inside of a bend.
 double height(const Crease& crease, const Vector2d& p) {
-  double nearest = 1e30, across = 0, along = 0, length = 0;
+  constexpr double piece = 1 * mm, softness = 5 * mm;
+  double total = 0, along = 0, across = 0, length = 0;
   for (std::size_t i = 0; i + 1 < crease.line.size(); ++i) {
     const Vector2d a = crease.line[i], e = crease.line[i + 1] - a;
-    const double t = std::clamp((p - a).dot(e) / e.squaredNorm(), 0.0, 1.0), d = (a + t * e - p).norm();
-    if (d < nearest) {
-      nearest = d;
-      across = e.x() * (p - a).y() - e.y() * (p - a).x() > 0 ? d : -d;  // lateral of a line that runs down
-      along = length + t * e.norm();
+    const double n = std::ceil(e.norm() / piece);
+    for (double t = 0.5 / n; t < 1; t += 1 / n) {
+      const Vector2d from = p - (a + t * e);
+      const double w = std::exp(-from.squaredNorm() / (softness * softness)) * e.norm() / n;
+      total += w;
+      along += w * (length + t * e.norm());
+      across += w * (e.x() * from.y() - e.y() * from.x()) / e.norm();  // lateral of a line that runs down: positive
     }
     length += e.norm();
   }
-  const double beyond = nearest - std::abs(across);
+  if (total < 1e-30) return 0;
+  along /= total;
+  across /= total;
   const double fade = smoothstep(0, 0.25 * length, along) * smoothstep(0, 0.3 * length, length - along);
-  return fade * std::exp(-std::pow(beyond / crease.width, 2)) *
-         (crease.gather * std::exp(-std::pow((across - crease.beside) / crease.spread, 2)) -
-          std::exp(-std::pow(across / crease.width, 2)));
+  return fade * (crease.gather * std::exp(-std::pow((across - crease.beside) / crease.spread, 2)) -
+                 std::exp(-std::pow(across / crease.width, 2)));
 }
 
 Crease nasolabial(const Proportions& p) {

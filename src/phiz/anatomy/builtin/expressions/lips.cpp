@@ -70,13 +70,19 @@ LipControl::LipControl(const HeadTemplate& head) {
     const Vector3d X = head.volume.V.row(v).transpose();
     const double distance = std::sqrt((line_.rowwise() - X.transpose()).rowwise().squaredNorm().minCoeff());
     nearness_[v] = 1 - smoothstep(0.003, 0.008, distance);
-    const double grip = std::pow(1 - smoothstep(0.002, 0.016, distance), 2);
-    if (grip <= 0 || head.carrier[v] != static_cast<int>(Carrier::flesh)) continue;
-    LipVertex entry{v, std::clamp((X.x() - centre) / half, -1.2, 1.2), grip, 0, 0, true, X};
-    // The lining slides on gums and teeth: it follows from farther away than the skin does.
-    entry.follow =
-        1 - (lining[static_cast<std::size_t>(i)] ? smoothstep(0, 0.042, distance) : smoothstep(0.002, 0.024, distance));
     const auto k = static_cast<std::size_t>(i);
+    const double along = std::clamp((X.x() - centre) / half, -1.2, 1.2);
+    // Lining that slides with a corner; the crease behind it counts as part of both lips.
+    const bool inside = lining[k] || (in_upper[k] && in_lower[k] && X.z() < frame_at(along).middle.z() - 0.001);
+    const double from_corner =
+        std::min((X.transpose() - line_.row(0)).norm(), (X.transpose() - line_.row(stations - 1)).norm());
+    LipVertex entry{v, along, std::pow(1 - smoothstep(0.002, 0.016, distance), 2), 0, 0, 0, 0, true, X};
+    entry.follow = 1 - smoothstep(0.002, 0.024, distance);
+    if (inside) {
+      entry.slide_grip = 1 - smoothstep(0.012, 0.036, from_corner);
+      entry.slide_follow = 1 - smoothstep(0, 0.042, distance);
+    }
+    if (std::max(entry.grip, entry.slide_grip) <= 0 || head.carrier[v] != static_cast<int>(Carrier::flesh)) continue;
     entry.lip =
         red[k] ? 1
                : 1 - smoothstep(0, 0.007,
@@ -123,7 +129,9 @@ std::vector<Handle> LipControl::handles(const ExpressionRecipe& recipe, const Ei
     const LipMotion& motion = v.upper ? recipe.upper_lip : recipe.lower_lip;
     const double side = recipe.paired && !recipe.both_halves ? smoothstep(-0.3, 0.35, v.along) : 1;
     const double q = std::min(1.0, v.along * v.along);
-    double weight = motion.hold * v.grip * side;
+    const bool slides = motion.corner.out <= -5 && v.slide_grip > v.grip;
+    const double follow = slides ? v.slide_follow : v.follow;
+    double weight = motion.hold * (slides ? v.slide_grip : v.grip) * side;
     if (recipe.open > 0) weight *= 1 - 0.8 * q;  // the corners are freer on an open jaw
     if (weight <= 0) continue;
     const LipSection m = section(motion, v.along);
@@ -134,9 +142,10 @@ std::vector<Handle> LipControl::handles(const ExpressionRecipe& recipe, const Ei
     const Vector3d rolled = axis_point + Eigen::AngleAxisd(roll, f.along) * (thinned - axis_point);
     const Vector3d forward = (f.out + 2 * Vector3d::UnitZ()).normalized();
     const Vector3d way = m.up * f.up + (m.out - m.turn) * forward + (m.wide + m.left) * Vector3d::UnitX();
-    const Vector3d moved = rolled + side * v.follow * mm * way;
+    const Vector3d moved = rolled + side * follow * mm * way;
     // The lower lip rides on the jaw, less so towards the corners.
-    const double to_end = std::min(1.0, q / (1.05 * 1.05));  // the opening is round, and ends outside of the parting line
+    const double to_end =
+        std::min(1.0, q / (1.03 * 1.03));  // the opening is round, and ends outside of the parting line
     const double shared = 0.5 - 0.5 * std::sqrt(1 - to_end);
     const double ride = v.upper ? shared : 1 - shared;
     result.push_back({v.vertex, (1 - ride) * moved + ride * (jaw * moved), weight});

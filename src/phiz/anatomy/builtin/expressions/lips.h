@@ -27,11 +27,12 @@ class LipControl {
  private:
   /// One skin vertex near the mouth.
   struct LipVertex {
-    int vertex;     ///< row of volume.V
-    double along;   ///< -1 right corner, 0 centre, 1 left corner
-    double grip;    ///< how firmly the ring of the lips holds it: 1 near the parting line, 0 at 16 mm
-    double follow;  ///< share of the lip's way that it goes: 1 near the line, 0 at 24 mm
-    double lip;     ///< how far it belongs to the body of the lip, which rolls
+    int vertex;                       ///< row of volume.V
+    double along;                     ///< -1 right corner, 0 centre, 1 left corner
+    double grip;                      ///< how firmly the ring of the lips holds it: 1 near the parting line, 0 at 16 mm
+    double follow;                    ///< share of the lip's way that it goes: 1 near the line, 0 at 24 mm
+    double slide_grip, slide_follow;  ///< the same where a corner that is drawn far back takes the cheek's lining along
+    double lip;                       ///< how far it belongs to the body of the lip, which rolls
     bool upper;
     Vector3d rest;
   };

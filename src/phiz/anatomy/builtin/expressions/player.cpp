@@ -1,30 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "phiz/anatomy/builtin/expressions/player.h"
 
+#include <algorithm>
+
 #include "phiz/anatomy/builtin/ease.h"
 #include "phiz/anatomy/builtin/expressions/mirror.h"
 #include "phiz/anatomy/builtin/expressions/puff.h"
 #include "phiz/anatomy/builtin/expressions/seal.h"
 #include "phiz/anatomy/builtin/expressions/teeth.h"
 #include "phiz/geometry/operators.h"
+#include "phiz/numerics/cholesky.h"
 
 namespace phiz {
 namespace {
 
 constexpr int iterations = 30;
-constexpr int smoothing_passes = 4;
-constexpr double lip_gap = 0.00025;  ///< metres; half of what they leave at rest, so that left and right can be added
+constexpr double smoothing_length = 0.0033;  ///< metres
+constexpr double lip_gap = 0.00018;  ///< metres; half of what they leave at rest, so that left and right can be added
 
-/// Evens out displacements D (one row per vertex of V) where `calm` (0 to 1 per row) allows: tets are irregular, skin
-/// is not. Cotangent weights, so that the pattern of the triangles leaves no trace.
+/// Evens out displacements D (one row per vertex of V) over `smoothing_length` where `calm` (0 to 1 per row) allows:
+/// tets are irregular, skin is not. One implicit step of diffusion, so that the density of the triangles leaves no
+/// trace.
 void smooth(MatrixX3d& D, const MatrixX3d& V, const MatrixX3i& triangles, const VectorXd& calm) {
-  const SparseMatrixd L = cotangent_laplacian(V, triangles);
-  const VectorXd diagonal = L.diagonal();
-  for (int pass = 0; pass < smoothing_passes; ++pass) {
-    const MatrixX3d difference = L * D;
-    for (Eigen::Index v = 0; v < D.rows(); ++v)
-      if (diagonal[v] > 0) D.row(v) -= 0.6 * calm[v] / diagonal[v] * difference.row(v);
-  }
+  VectorXd mass = lumped_triangle_mass(V, triangles);
+  for (double& m : mass)
+    if (m <= 0) m = 1;  // vertices off the skin stay
+  SparseMatrixd M(mass.size(), mass.size());
+  M.setIdentity();
+  M.diagonal() = mass;
+  const SparseMatrixd A = M + smoothing_length * smoothing_length * cotangent_laplacian(V, triangles);
+  const MatrixX3d even = SparseCholesky(A).solve(M * D);
+  D += calm.asDiagonal() * (even - D);
 }
 
 }  // namespace
@@ -75,7 +81,7 @@ MatrixX3d ExpressionPlayer::play(const ExpressionRecipe& recipe) const {
   MatrixX3d X;
   if (recipe.sealed)  // the lips stretch step by step, or they would fold
     for (const double share : {0.25, 0.5, 0.75}) X = posed(recipe, share * pose, X, iterations / 2);
-  X = posed(recipe, pose, X, iterations);
+  X = posed(recipe, pose, X, recipe.open > 0.3 ? 2 * iterations : iterations);  // a long way for what is under the jaw
   MatrixX3d D = X - head_.volume.V;
   VectorXd calm(D.rows());
   for (Eigen::Index v = 0; v < D.rows(); ++v)
@@ -88,7 +94,10 @@ MatrixX3d ExpressionPlayer::play(const ExpressionRecipe& recipe) const {
   std::vector<char> kept(static_cast<std::size_t>(drawn.rows()), 0);  // what is pressed together looks folded
   left_lids_.mark_settled(head_.skin.V, kept);
   right_lids_.mark_settled(head_.skin.V, kept);
-  if (recipe.closed) seal_lips(head_, drawn);
+  if (recipe.closed)
+    seal_lips(head_, drawn);
+  else if (recipe.open < 0.1 && std::max(recipe.upper_lip.hold, recipe.lower_lip.hold) > 0)
+    join_corners(head_, drawn);
   keep_lips_apart(recipe.paired, drawn);
   const LidMotion other = recipe.paired ? LidMotion{} : recipe.lids;
   for (int round = 0; round < 2; ++round) {  // each may undo a little of the other

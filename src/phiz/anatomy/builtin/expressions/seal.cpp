@@ -11,8 +11,9 @@
 namespace phiz {
 namespace {
 
-constexpr double reach = 0.012;   ///< of the skin round the lips that follows, metres
-constexpr double alike = 0.0018;  ///< within which both lips move alike, metres
+constexpr double reach = 0.012;    ///< of the skin round the lips that follows, metres
+constexpr double press = 0.00015;  ///< by which closed lips are nearer than at rest, metres
+constexpr double alike = 0.0018;   ///< within which both lips move alike, metres
 
 /// How far up the point of the line `loop` at `x` moves, metres.
 double rise(const HeadTemplate& head, const VectorXi& loop, const MatrixX3d& displacement, double x) {
@@ -35,18 +36,22 @@ std::vector<char> lip_sides(const HeadTemplate& head) {
   return side;
 }
 
-/// Lets both lips move alike where they lie against one another, in the corners too, where they are one.
-void join(const HeadTemplate& head, const std::vector<char>& side, MatrixX3d& displacement) {
-  std::vector<int> seam, upper, lower;
+/// Lets both lips move alike where they lie against one another, in the corners too, where they are one; or, of lips
+/// that part, in the corners only.
+void join(const HeadTemplate& head, bool corners_only, MatrixX3d& displacement) {
+  const std::vector<char> side = lip_sides(head);
+  std::vector<int> seam, corners, upper, lower;
   for (const char* loop : {"loop:upperLipLine", "loop:lowerLipLine"})
     for (const int v : head.skin_regions.at(loop)) seam.push_back(v);
   for (int v = 0; v < head.skin.V.rows(); ++v) {
     const char own = side[static_cast<std::size_t>(v)];
     if ((own & 1) != 0) upper.push_back(v);
     if ((own & 2) != 0) lower.push_back(v);
-    if (own == 3) seam.push_back(v);
+    if (own == 3) corners.push_back(v);
   }
-  const MatrixX3d line = head.skin.V(seam, Eigen::all), before = displacement;
+  seam.insert(seam.end(), corners.begin(), corners.end());
+  const MatrixX3d line = head.skin.V(corners_only ? corners : seam, Eigen::all), before = displacement;
+  const double half = line.col(0).cwiseAbs().maxCoeff();
   const auto mean = [&](const std::vector<int>& lip, const Vector3d& X) {
     Vector3d sum = Vector3d::Zero();
     double weights = 1e-12;
@@ -70,6 +75,8 @@ void join(const HeadTemplate& head, const std::vector<char>& side, MatrixX3d& di
     Vector3d d = before.row(v).transpose();
     if (own != 3) d += (own == 1 ? -0.5 : 0.5) * share * (above - below);
     displacement.row(v) = ((1 - even) * d + even * both).transpose();
+    const double inside = 1 - smoothstep(0.6, 0.9, std::abs(X.x()) / half);
+    if (own != 3 && !corners_only) displacement(v, 1) += (own == 1 ? -0.5 : 0.5) * share * inside * press;
   }
 }
 
@@ -92,7 +99,11 @@ void seal_lips(const HeadTemplate& head, MatrixX3d& displacement) {
     const double share = 0.5 * (1 - smoothstep(0.001, reach, std::sqrt(squared)));
     displacement(v, 1) += above ? -share * gap : share * gap;
   }
-  join(head, side, displacement);
+  join(head, false, displacement);
+}
+
+void join_corners(const HeadTemplate& head, MatrixX3d& displacement) {
+  join(head, true, displacement);
 }
 
 }  // namespace phiz

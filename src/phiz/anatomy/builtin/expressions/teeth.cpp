@@ -54,7 +54,7 @@ std::vector<Handle> floor_handles(const HeadTemplate& head, const Eigen::Isometr
   for (std::size_t i = 0; i < floor.size(); ++i) {
     const int v = head.skin_vertices[static_cast<Eigen::Index>(i)];
     if (floor[i] && head.carrier[v] == static_cast<int>(Carrier::flesh))
-      handles.push_back({v, jaw * Vector3d(head.volume.V.row(v).transpose()), 0.6});
+      handles.push_back({v, jaw * Vector3d(head.volume.V.row(v).transpose()), 0.3});
   }
   return handles;
 }

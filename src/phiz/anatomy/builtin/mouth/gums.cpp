@@ -15,7 +15,7 @@ namespace {
 
 constexpr int labial_points = 14, ridge_points = 4, lingual_points = 10;
 constexpr int half_stations = 110;
-constexpr double papilla_share = 0.5;  ///< of the crown's height that the gum fills between two teeth
+constexpr double papilla_share = 0.56;  ///< of the crown's height that the gum fills between two teeth
 constexpr double behind = 0.004;       ///< that the gum goes on behind the last molar, metres
 
 /// The gum at one place of the arch, metres.
@@ -71,7 +71,7 @@ TriangleMesh make_gums(const ArchCurve& arch, const HalfDentition& teeth, double
       // The attached gum follows the roots; at the margin it rolls in to the neck, between the teeth more.
       const double root = 0.0002 + 0.00025 * m.papilla * std::exp(-std::pow((below - 0.005) / 0.006, 2));
       const double rolled = std::exp(-below / 0.0009);
-      const double at_margin = std::max(m.depth - 0.00045, 0.0002) + 0.0006 * m.papilla;
+      const double at_margin = std::max(m.depth - 0.00045, 0.0002) + 0.00045 * m.papilla;
       const double near = std::exp(-std::pow(below / 0.0042, 2));
       section.emplace_back(root + near * (at_margin - root) + 0.0004 * rolled, y);
     }
