@@ -92,6 +92,16 @@ TEST(TriangleOperators, CotangentLaplacianOfLinearFunctionsOnAPlaneVanishesInsid
   EXPECT_NEAR(lumped_triangle_mass(V, F).sum(), area, 1e-14);
 }
 
+TEST(TriangleOperators, WeightsScaleTheTrianglesOfACotangentLaplacian) {
+  MatrixX3d V(4, 3);
+  V << 0, 0, 0, 2, 0, 0, 2, 1.5, 0, 0, 1, 0.4;
+  MatrixX3i F(2, 3);
+  F << 0, 1, 2, 0, 2, 3;
+  const SparseMatrixd expected =
+      3 * cotangent_laplacian(V, F.topRows(1)) + 0.5 * cotangent_laplacian(V, F.bottomRows(1));
+  EXPECT_LE((cotangent_laplacian(V, F, Eigen::Vector2d(3, 0.5)) - expected).norm(), 1e-14);
+}
+
 TEST(TriangleOperators, DegenerateTrianglesAddNothing) {
   MatrixX3d V(3, 3);
   V << 0, 0, 0, 1, 0, 0, 2, 0, 0;

@@ -83,7 +83,7 @@ SparseMatrixd tet_gradient_operator(const MatrixX3d& V, const MatrixX4i& T) {
   return assemble(3 * T.rows(), V.rows(), entries);
 }
 
-SparseMatrixd cotangent_laplacian(const MatrixX3d& V, const MatrixX3i& F) {
+SparseMatrixd cotangent_laplacian(const MatrixX3d& V, const MatrixX3i& F, const VectorXd& weight) {
   Triplets entries;
   entries.reserve(static_cast<std::size_t>(F.rows()) * 12);
   for (Eigen::Index f = 0; f < F.rows(); ++f)
@@ -92,7 +92,7 @@ SparseMatrixd cotangent_laplacian(const MatrixX3d& V, const MatrixX3i& F) {
       const Vector3d e1 = V.row(i) - V.row(F(f, k)), e2 = V.row(j) - V.row(F(f, k));
       const double twice_area = e1.cross(e2).norm();
       if (!(twice_area > 1e-14 * (e1.squaredNorm() + e2.squaredNorm()))) continue;
-      const double half_cot = 0.5 * e1.dot(e2) / twice_area;
+      const double half_cot = 0.5 * (weight.size() > 0 ? weight[f] : 1.0) * e1.dot(e2) / twice_area;
       entries.emplace_back(i, j, -half_cot);
       entries.emplace_back(j, i, -half_cot);
       entries.emplace_back(i, i, half_cot);

@@ -31,8 +31,9 @@ Matrix3d deformation_gradient(const MatrixX3d& V, const MatrixX4i& T, const TetR
 SparseMatrixd tet_gradient_operator(const MatrixX3d& V, const MatrixX4i& T);
 
 /// Stiffness of the Laplacian on a triangle surface (Pinkall and Polthier 1993), n x n, symmetric positive
-/// semidefinite: u^T L u = integral of |grad u|^2. Degenerate triangles contribute nothing.
-SparseMatrixd cotangent_laplacian(const MatrixX3d& V, const MatrixX3i& F);
+/// semidefinite: u^T L u = integral of weight |grad u|^2. Degenerate triangles contribute nothing; `weight` is one
+/// number per triangle, 1 when empty.
+SparseMatrixd cotangent_laplacian(const MatrixX3d& V, const MatrixX3i& F, const VectorXd& weight = {});
 
 /// The same for tets (linear finite elements), units of metres; `weight` scales each tet when not empty.
 SparseMatrixd tet_laplacian(const MatrixX3d& V, const MatrixX4i& T, const VectorXd& weight = {});

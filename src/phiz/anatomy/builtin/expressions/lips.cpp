@@ -144,9 +144,7 @@ std::vector<Handle> LipControl::handles(const ExpressionRecipe& recipe, const Ei
     const Vector3d way = m.up * f.up + (m.out - m.turn) * forward + (m.wide + m.left) * Vector3d::UnitX();
     const Vector3d moved = rolled + side * follow * mm * way;
     // The lower lip rides on the jaw, less so towards the corners.
-    const double to_end =
-        std::min(1.0, q / (1.03 * 1.03));  // the opening is round, and ends outside of the parting line
-    const double shared = 0.5 - 0.5 * std::sqrt(1 - to_end);
+    const double shared = 0.5 - 0.5 * std::sqrt(1 - q);  // the opening is round
     const double ride = v.upper ? shared : 1 - shared;
     result.push_back({v.vertex, (1 - ride) * moved + ride * (jaw * moved), weight});
   }

@@ -15,22 +15,24 @@ namespace phiz {
 namespace {
 
 constexpr int iterations = 30;
-constexpr double smoothing_length = 0.0033;  ///< metres
+constexpr double smoothing_length = 0.003;  ///< metres
 constexpr double lip_gap = 0.00018;  ///< metres; half of what they leave at rest, so that left and right can be added
 
 /// Evens out displacements D (one row per vertex of V) over `smoothing_length` where `calm` (0 to 1 per row) allows:
 /// tets are irregular, skin is not. One implicit step of diffusion, so that the density of the triangles leaves no
-/// trace.
+/// trace; little spreads from where calm is low.
 void smooth(MatrixX3d& D, const MatrixX3d& V, const MatrixX3i& triangles, const VectorXd& calm) {
   VectorXd mass = lumped_triangle_mass(V, triangles);
   for (double& m : mass)
-    if (m <= 0) m = 1;  // vertices off the skin stay
-  SparseMatrixd M(mass.size(), mass.size());
+    if (m <= 0) m = 1;  // what is not skin stays as it is
+  VectorXd conduction(triangles.rows());
+  for (Eigen::Index f = 0; f < triangles.rows(); ++f)
+    conduction[f] = std::pow(smoothing_length * calm(triangles.row(f)).minCoeff(), 2);
+  SparseMatrixd M(V.rows(), V.rows());
   M.setIdentity();
   M.diagonal() = mass;
-  const SparseMatrixd A = M + smoothing_length * smoothing_length * cotangent_laplacian(V, triangles);
-  const MatrixX3d even = SparseCholesky(A).solve(M * D);
-  D += calm.asDiagonal() * (even - D);
+  const SparseMatrixd A = M + cotangent_laplacian(V, triangles, conduction);
+  D = SparseCholesky(A).solve(M * D);
 }
 
 }  // namespace

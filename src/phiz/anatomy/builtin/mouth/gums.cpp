@@ -16,7 +16,7 @@ namespace {
 constexpr int labial_points = 14, ridge_points = 4, lingual_points = 10;
 constexpr int half_stations = 110;
 constexpr double papilla_share = 0.56;  ///< of the crown's height that the gum fills between two teeth
-constexpr double behind = 0.004;       ///< that the gum goes on behind the last molar, metres
+constexpr double behind = 0.004;        ///< that the gum goes on behind the last molar, metres
 
 /// The gum at one place of the arch, metres.
 struct Margin {
