@@ -49,8 +49,8 @@ double height(const Crease& crease, const Vector2d& p) {
 
 Crease nasolabial(const Proportions& p) {
   const Vector2d ala = p.alare.head<2>(), corner = p.cheilion.head<2>();
-  const auto at = [](const Vector2d& from, double x, double y) { return Vector2d(from + mm * Vector2d(x, y)); };
-  return {{at(ala, 1.5, 1), at(ala, 3, -9), at(corner, 4, 14.5), at(corner, 10.5, 3), at(corner, 10, -8)},
+  const auto at = [&](double down, double aside) { return Vector2d(ala + down * (corner - ala) + Vector2d(aside, 0)); };
+  return {{at(-0.03, 1.5 * mm), at(0.27, 1.4 * mm), at(0.56, 6.6 * mm), at(0.91, 11 * mm), at(1.24, 8.6 * mm)},
           2.8 * mm,
           8.5 * mm,
           6.5 * mm,
