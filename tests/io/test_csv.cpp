@@ -63,6 +63,44 @@ TEST(LiveLink, seconds_and_no_time_at_all_are_understood) {
   EXPECT_NEAR(none.time[1], 1.0 / 60, 1e-12);
 }
 
+TEST(LiveLink, milliseconds_and_times_of_day_are_understood) {
+  const auto milliseconds = parse_live_link("timestamp_ms,jawOpen\n1000,0\n1033,1\n1067,0\n", "a.csv").performance;
+  EXPECT_NEAR(milliseconds.time[2], 0.067, 1e-12);
+  EXPECT_EQ(milliseconds.frame_rate, 30);
+  const auto clock = parse_live_link("Time,jawOpen\n23:59:59.96,0\n24:00:00,1\n0:00:00.04,0\n", "a.csv").performance;
+  EXPECT_NEAR(clock.time[2], 0.08, 1e-9);
+  EXPECT_EQ(clock.frame_rate, 25);
+  // A time code says more than seconds, seconds more than milliseconds, wherever they stand.
+  const auto both = parse_live_link("ms,time [s],jawOpen\n7,0,0\n7,0.5,1\n", "a.csv").performance;
+  EXPECT_EQ(both.time[1], 0.5);
+}
+
+TEST(LiveLink, frames_without_a_face_are_left_out_with_a_note) {
+  const auto recording = parse_live_link(
+      "Timecode,BlendShapeCount,JawOpen,HeadYaw\n00:00:00:00.0,0\n00:00:00:01.0,0,,\n00:00:00:02.0,61,0.5,0.1\n"
+      "00:00:00:03.0,61,,\n00:00:00:04.0,61,0.7,0.1\n",
+      "a.csv");
+  ASSERT_EQ(recording.performance.time.size(), 2);
+  EXPECT_NEAR(recording.performance.time[1], 2.0 / 60, 1e-9);
+  EXPECT_EQ(recording.performance.weights(1, column("jawOpen")), 0.7);
+  EXPECT_NE(recording.notes.back().find("3 frames in which no face was seen"), std::string::npos);
+  EXPECT_REJECTED(parse_live_link("Timecode,BlendShapeCount,JawOpen\n00:00:00:00.0,0\n", "a.csv"), "no face");
+  EXPECT_REJECTED(parse_live_link("time,jawOpen,headYaw\n0,,0\n", "a.csv"), "finite number, found ''");
+}
+
+TEST(LiveLink, spreadsheets_of_all_countries_are_understood) {
+  for (const char* text : {"sep=;\r\ntime;jawOpen\r\n0;0\r\n0,02;0,5\r\n", "time\tjawOpen\n0\t0\n0,02\t0,5\n",
+                           "time,jawOpen,\n0,0,\n\"0,02\",\"0,5\"\n", "\xEF\xBB\xBFtime,jawOpen\r0,0\r0.02,.5\r"}) {
+    const Performance p = parse_live_link(text, "a.csv").performance;
+    ASSERT_EQ(p.time.size(), 2) << text;
+    EXPECT_EQ(p.time[1], 0.02) << text;
+    EXPECT_EQ(p.weights(1, column("jawOpen")), 0.5) << text;
+  }
+  const auto codes = parse_live_link("Timecode;jawOpen\n0:0:0:0,5;0\n0:0:0:1,5;1\n", "a.csv").performance;
+  EXPECT_NEAR(codes.time[1], 1.0 / 60, 1e-12);
+  EXPECT_REJECTED(parse_live_link("time,jawOpen\n0,00,0,5\n", "a.csv"), "decimal comma");
+}
+
 TEST(LiveLink, repeated_frames_are_left_out_with_a_note) {
   const auto recording = parse_live_link("time,jawOpen\n0,0\n0.02,1\n0.02,1\n0.04,0\n", "a.csv");
   EXPECT_EQ(recording.performance.time.size(), 3);
@@ -122,7 +160,8 @@ TEST(Timecode, hours_may_pass_midnight_either_way) {
 }
 
 TEST(Timecode, what_is_none_is_refused) {
-  for (const char* text : {"", "1:2:3", "1:60:0:0", "a:b:c:d", "1:2:3:-4", "1:2:3:nan", "1:2:3:120", "1:2:3:4:5"}) {
+  for (const char* text :
+       {"", "1:2:3", "1:2:3.5:4", "1:60:0:0", "a:b:c:d", "1:2:3:-4", "1:2:3:nan", "1:2:3:120", "1:2:3:4:5"}) {
     EXPECT_FALSE(parse_timecode(text)) << text;
   }
   EXPECT_EQ(format_timecode(3600 + 59.99999999, 60), "01:01:00:00.000");

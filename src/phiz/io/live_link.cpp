@@ -7,10 +7,11 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "phiz/anatomy/expression_names.h"
 #include "phiz/core/error.h"
-#include "phiz/io/csv_table.h"
+#include "phiz/io/csv_reader.h"
 #include "phiz/io/file_bytes.h"
 #include "phiz/io/output_file.h"
 #include "phiz/io/text_scanner.h"
@@ -34,70 +35,90 @@ constexpr std::array<std::string_view, 9> angle_names = {"headYaw",     "headPit
 constexpr std::array<double, 3> angle_signs = {-1, 1, -1};
 
 constexpr int expression_count = static_cast<int>(expression_names.size());
-constexpr int unknown_column = -1, count_column = -2, timecode_column = -3, seconds_column = -4;
+constexpr int angle_count = static_cast<int>(angle_names.size());
+constexpr int value_count = expression_count + angle_count;
+constexpr int unknown_column = -1, count_column = -2, timecode_column = -3, seconds_column = -4,
+              milliseconds_column = -5;
 
-/// Lower case without separators and without what stands before a dot, colon or slash.
+/// Lower case without separators, brackets and what stands before a dot, colon or slash.
 std::string plain_name(std::string_view name) {
   const std::size_t prefix = name.find_last_of(".:/|");
   if (prefix != std::string_view::npos) name.remove_prefix(prefix + 1);
   std::string plain = lowered(name);
-  std::erase_if(plain, [](char c) { return c == '_' || c == '-' || c == ' '; });
+  std::erase_if(plain, [](char c) { return std::string_view("_- ()[]").find(c) != std::string_view::npos; });
   return plain;
 }
 
 /// Column number per plain name: 0 to 51 expressions, 52 to 60 angles.
 std::map<std::string, int> known_columns() {
-  std::map<std::string, int> columns = {{"timecode", timecode_column}, {"blendshapecount", count_column},
-                                        {"time", seconds_column},      {"seconds", seconds_column},
-                                        {"timestamp", seconds_column}, {"times", seconds_column}};
+  std::map<std::string, int> columns = {{"timecode", timecode_column}, {"blendshapecount", count_column}};
+  for (const std::string time : {"time", "timestamp", ""}) {
+    for (const char* unit : {"", "s", "sec", "seconds"}) columns[time + unit] = seconds_column;
+    for (const char* unit : {"ms", "msec", "milliseconds"}) columns[time + unit] = milliseconds_column;
+  }
+  columns.erase("");
+  columns.erase("s");
   for (int i = 0; i < expression_count; ++i) {
     const std::string name = plain_name(expression_names[static_cast<std::size_t>(i)]);
     columns[name] = i;
     if (name.ends_with("left")) columns[name.substr(0, name.size() - 3)] = i;
     if (name.ends_with("right")) columns[name.substr(0, name.size() - 4)] = i;
   }
-  for (int i = 0; i < 9; ++i) columns[plain_name(angle_names[static_cast<std::size_t>(i)])] = expression_count + i;
+  for (int i = 0; i < angle_count; ++i)
+    columns[plain_name(angle_names[static_cast<std::size_t>(i)])] = expression_count + i;
   return columns;
+}
+
+std::string with_decimal_point(std::string field) {
+  std::replace(field.begin(), field.end(), ',', '.');
+  return field;
+}
+
+bool is_time(int column) {
+  return column == timecode_column || column == seconds_column || column == milliseconds_column;
 }
 
 class RecordingParser {
  public:
-  RecordingParser(std::string_view text, const std::string& where) : where_(where), table_(parse_csv(text, where)) {}
+  RecordingParser(std::string_view text, const std::string& where) : where_(where), rows_(text, where) {}
 
   LiveLinkRecording parse() {
     match_columns();
-    if (table_.rows.empty()) reject(where_, "a header but no frames", "the recording is empty");
-    read_values();
+    read_rows();
     note_unusual_weights();
-    read_time();
+    check_time();
+    set_frame_rate();
     drop_repeated_frames();
     return std::move(result_);
   }
 
  private:
-  std::string here(std::size_t row) const { return fmt::format("{}:{}", where_, table_.lines[row]); }
+  std::string place(int line) const { return fmt::format("{}:{}", where_, line); }
   void note(std::string text) { result_.notes.push_back(std::move(text)); }
 
   void match_columns() {
     const auto known = known_columns();
-    std::array<bool, expression_count + 9> found{};
+    const std::vector<std::string>& header = rows_.header();
+    std::array<bool, value_count> found{};
     std::string unknown, missing;
-    for (std::size_t c = 0; c < table_.header.size(); ++c) {
-      const auto place = known.find(plain_name(table_.header[c]));
+    for (std::size_t c = 0; c < header.size(); ++c) {
+      const auto place = known.find(plain_name(header[c]));
       target_.push_back(place == known.end() ? unknown_column : place->second);
-      if (target_[c] == timecode_column || target_[c] == seconds_column) {
-        if (time_column_ >= 0 && target_[static_cast<std::size_t>(time_column_)] == timecode_column) continue;
-        time_column_ = static_cast<int>(c);
+      if (is_time(target_[c])) {
+        // A time code before seconds before milliseconds.
+        if (!time_column_ || target_[c] > target_[*time_column_]) time_column_ = c;
+      } else if (target_[c] == count_column) {
+        count_column_ = c;
       } else if (target_[c] == unknown_column) {
-        if (!table_.header[c].empty()) unknown += (unknown.empty() ? "" : ", ") + quoted_word(table_.header[c]);
-      } else if (target_[c] >= 0) {
+        if (!header[c].empty()) unknown += (unknown.empty() ? "" : ", ") + quoted_word(header[c]);
+      } else {
         bool& seen = found[static_cast<std::size_t>(target_[c])];
-        if (seen) reject(where_ + ":1", fmt::format("column {} appears twice", quoted_word(table_.header[c])));
+        if (seen) reject(rows_.header_place(), fmt::format("column {} appears twice", quoted_word(header[c])));
         seen = true;
       }
     }
     if (std::none_of(found.begin(), found.begin() + expression_count, [](bool f) { return f; })) {
-      reject(where_ + ":1", "no column is named like an expression (jawOpen, mouthSmileLeft, ...)",
+      reject(rows_.header_place(), "no column is named like an expression (jawOpen, mouthSmileLeft, ...)",
              "is it a Live Link Face recording?");
     }
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -109,50 +130,109 @@ class RecordingParser {
     if (!unknown.empty()) note("columns that are not known are left out: " + unknown);
   }
 
-  double number(std::size_t row, std::size_t column) const {
-    std::string field = table_.rows[row][column];
-    if (table_.separator != ',') std::replace(field.begin(), field.end(), ',', '.');
-    const auto value = parse_number(field);
+  /// Recorders write a row without values, sometimes a short one, while they see no face.
+  bool row_has_no_face() const {
+    const std::vector<std::string>& fields = rows_.fields();
+    for (std::size_t c = 0; c < std::min(fields.size(), target_.size()); ++c)
+      if (target_[c] >= 0 && !fields[c].empty()) return false;
+    if (fields.size() == target_.size()) return true;
+    return count_column_ && *count_column_ < fields.size() && parse_number(fields[*count_column_]) == 0.0;
+  }
+
+  void read_rows() {
+    std::vector<double> values;
+    int without_face = 0;
+    while (rows_.next()) {
+      if (row_has_no_face()) {
+        ++without_face;
+        continue;
+      }
+      rows_.require_full_row();
+      values.resize(values.size() + value_count, 0.0);
+      double* const row = values.data() + values.size() - value_count;
+      for (std::size_t c = 0; c < target_.size(); ++c)
+        if (target_[c] >= 0) row[target_[c]] = checked(number(c), c);
+      read_time();
+      line_.push_back(rows_.line());
+    }
+    if (line_.empty())
+      reject(where_, without_face > 0 ? "no face was seen in any frame" : "a header but no frames",
+             "the recording is empty");
+    if (without_face > 0) note(fmt::format("{} frames in which no face was seen are left out", without_face));
+    store(values);
+    finish_time();
+  }
+
+  double number(std::size_t column) const {
+    const auto value = parse_number(with_decimal_point(rows_.fields()[column]));
     if (!value || !std::isfinite(*value)) {
-      reject(here(row), fmt::format("column {}: expected a finite number, found {}", quoted_word(table_.header[column]),
-                                    quoted_word(table_.rows[row][column])));
+      reject(place(rows_.line()),
+             fmt::format("column {}: expected a finite number, found {}", quoted_word(rows_.header()[column]),
+                         quoted_word(rows_.fields()[column])),
+             "correct the number or delete the line");
     }
     return *value;
   }
 
-  void read_values() {
+  /// The value of an expression or an angle, which must be in the range of its unit.
+  double checked(double value, std::size_t column) const {
+    const bool weight = target_[column] < expression_count;
+    if (std::abs(value) <= (weight ? largest_weight : largest_angle)) return value;
+    const std::string name = quoted_word(rows_.header()[column]);
+    if (weight) {
+      reject(place(rows_.line()), fmt::format("column {}: weight {} is far outside of 0 to 1", name, value),
+             "if the weights are percentages, divide them by 100");
+    }
+    reject(place(rows_.line()), fmt::format("column {}: angle {} is more than half a turn in radians", name, value),
+           "if the angles are degrees, multiply them by 0.0174533");
+  }
+
+  /// `values`: value_count numbers per frame.
+  void store(const std::vector<double>& values) {
+    const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, value_count, Eigen::RowMajor>> rows(
+        values.data(), static_cast<Eigen::Index>(line_.size()), value_count);
+    const Eigen::RowVector3d signs(angle_signs[0], angle_signs[1], angle_signs[2]);
     Performance& p = result_.performance;
     p.expressions.assign(expression_names.begin(), expression_names.end());
-    const auto frames = static_cast<Eigen::Index>(table_.rows.size());
-    p.weights = MatrixXd::Zero(frames, expression_count);
-    for (MatrixX3d* angles : {&p.head, &p.left_eye, &p.right_eye}) *angles = MatrixX3d::Zero(frames, 3);
-    for (std::size_t row = 0; row < table_.rows.size(); ++row) {
-      for (std::size_t c = 0; c < target_.size(); ++c) {
-        if (target_[c] >= 0) store(row, c, number(row, c));
-      }
+    p.weights = rows.leftCols<expression_count>();
+    int first = expression_count;
+    for (MatrixX3d* angles : {&p.head, &p.left_eye, &p.right_eye}) {
+      *angles = rows.middleCols<3>(first).array().rowwise() * signs.array();
+      first += 3;
     }
   }
 
-  void store(std::size_t row, std::size_t column, double value) {
-    Performance& p = result_.performance;
-    const auto frame = static_cast<Eigen::Index>(row);
-    const int target = target_[column];
-    const std::string name = quoted_word(table_.header[column]);
-    if (target < expression_count) {
-      if (std::abs(value) > largest_weight) {
-        reject(here(row), fmt::format("column {}: weight {} is far outside of 0 to 1", name, value),
-               "if the weights are percentages, divide them by 100");
-      }
-      p.weights(frame, target) = value;
+  /// Of the row, into `codes_` or `time_`, whichever the first row asks for.
+  void read_time() {
+    if (!time_column_) return;
+    const std::string field = with_decimal_point(rows_.fields()[*time_column_]);
+    const auto code = parse_timecode(field);
+    const auto clock = parse_clock(field);
+    const bool first = line_.empty();
+    if (first && (code || clock)) is_clock_ = clock.has_value();
+    if (first ? code || clock : !codes_.empty()) {
+      const auto& found = is_clock_ ? clock : code;
+      if (!found)
+        reject(place(rows_.line()), "expected a time code HH:MM:SS:FF.sub as before, found " + quoted_word(field));
+      codes_.push_back(*found);
       return;
     }
-    if (std::abs(value) > largest_angle) {
-      reject(here(row), fmt::format("column {}: angle {} is more than half a turn in radians", name, value),
-             "if the angles are degrees, multiply them by 0.0174533");
+    if (target_[*time_column_] == timecode_column && !parse_number(field))
+      reject(place(rows_.line()), "expected a time code HH:MM:SS:FF.sub, found " + quoted_word(field));
+    const double unit = target_[*time_column_] == milliseconds_column ? 1e-3 : 1;
+    time_.push_back(number(*time_column_) * unit);
+  }
+
+  /// Seconds since the first frame.
+  void finish_time() {
+    if (!time_column_) {
+      note(fmt::format("there is no time column; frames count as 1/{} s apart", default_rate));
+      for (std::size_t i = 0; i < line_.size(); ++i) time_.push_back(static_cast<double>(i) / default_rate);
+    } else if (!codes_.empty()) {
+      time_ = timecode_seconds(codes_, is_clock_ ? 1 : timecode_rate(codes_));
     }
-    const int angle = target - expression_count;
-    MatrixX3d& angles = angle < 3 ? p.head : angle < 6 ? p.left_eye : p.right_eye;
-    angles(frame, angle % 3) = value * angle_signs[static_cast<std::size_t>(angle % 3)];
+    for (std::size_t i = time_.size(); i-- > 0;) time_[i] -= time_[0];
+    result_.performance.time = Eigen::Map<const VectorXd>(time_.data(), static_cast<Eigen::Index>(time_.size()));
   }
 
   void note_unusual_weights() {
@@ -162,47 +242,22 @@ class RecordingParser {
       note(fmt::format("weights go from {:.3g} to {:.3g}; they are played as they are", low, high));
   }
 
-  void read_time() {
-    const std::size_t rows = table_.rows.size();
-    std::vector<double> time(rows);
-    const auto column = static_cast<std::size_t>(std::max(time_column_, 0));
-    double rate = 0;
-    if (time_column_ < 0) {
-      note(fmt::format("there is no time column; frames count as 1/{} s apart", default_rate));
-      for (std::size_t i = 0; i < rows; ++i) time[i] = static_cast<double>(i) / default_rate;
-    } else if (parse_timecode(table_.rows[0][column])) {
-      std::vector<Timecode> codes;
-      for (std::size_t i = 0; i < rows; ++i) {
-        const auto code = parse_timecode(table_.rows[i][column]);
-        if (!code)
-          reject(here(i), "expected a time code HH:MM:SS:FF.sub, found " + quoted_word(table_.rows[i][column]));
-        codes.push_back(*code);
-      }
-      rate = timecode_rate(codes);
-      time = timecode_seconds(codes, rate);
-    } else {
-      if (target_[column] == timecode_column && !parse_number(table_.rows[0][column])) {
-        reject(here(0), "expected a time code HH:MM:SS:FF.sub, found " + quoted_word(table_.rows[0][column]));
-      }
-      for (std::size_t i = 0; i < rows; ++i) time[i] = number(i, column);
-      for (std::size_t i = rows; i-- > 0;) time[i] -= time[0];
-    }
-    for (std::size_t i = 1; i < rows; ++i) {
-      if (time[i] < time[i - 1]) {
-        reject(here(i), fmt::format("time runs backward by {:.4g} s", time[i - 1] - time[i]),
+  void check_time() const {
+    for (std::size_t i = 1; i < time_.size(); ++i) {
+      if (time_[i] < time_[i - 1]) {
+        reject(place(line_[i]), fmt::format("time runs backward by {:.4g} s", time_[i - 1] - time_[i]),
                "sort the frames by time");
       }
-      if (time[i] > 7 * 86400.0) reject(here(i), "the recording is longer than a week", "is the time in seconds?");
+      if (time_[i] > 7 * 86400.0)
+        reject(place(line_[i]), "the recording is longer than a week", "is the time in seconds?");
     }
-    result_.performance.time = Eigen::Map<const VectorXd>(time.data(), static_cast<Eigen::Index>(rows));
-    set_frame_rate(time);
   }
 
   /// The rate is that of the typical step, a usual rate where it is near one.
-  void set_frame_rate(const std::vector<double>& time) {
+  void set_frame_rate() {
     std::vector<double> steps;
-    for (std::size_t i = 1; i < time.size(); ++i) {
-      if (time[i] > time[i - 1]) steps.push_back(time[i] - time[i - 1]);
+    for (std::size_t i = 1; i < time_.size(); ++i) {
+      if (time_[i] > time_[i - 1]) steps.push_back(time_[i] - time_[i - 1]);
     }
     double& rate = result_.performance.frame_rate;
     rate = default_rate;
@@ -239,9 +294,13 @@ class RecordingParser {
   }
 
   std::string where_;
-  CsvTable table_;
-  std::vector<int> target_;
-  int time_column_ = -1;
+  CsvReader rows_;
+  std::vector<int> target_;  // per column: its expression or angle, or one of the negative constants
+  std::optional<std::size_t> time_column_, count_column_;
+  std::vector<int> line_;        // per frame
+  std::vector<double> time_;     // per frame, when the file has seconds
+  std::vector<Timecode> codes_;  // per frame, when the file has time codes
+  bool is_clock_ = false;        // they are HH:MM:SS.sss
   LiveLinkRecording result_;
 };
 
@@ -274,7 +333,7 @@ void write_live_link(const std::string& path, const Performance& performance) {
   const double nominal = std::round(performance.frame_rate);
   const int rate = nominal >= 24 && nominal <= 120 ? static_cast<int>(nominal) : 60;
   for (Eigen::Index frame = 0; frame < performance.time.size(); ++frame) {
-    text += format_timecode(performance.time[frame], rate) + fmt::format(",{}", expression_count + 9);
+    text += format_timecode(performance.time[frame], rate) + fmt::format(",{}", value_count);
     for (const Eigen::Index column : source) {
       text += fmt::format(",{:.9g}", column < 0 ? 0.0 : performance.weights(frame, column));
     }

@@ -17,13 +17,15 @@ struct LiveLinkRecording {
 };
 
 /// Reads a recording. Columns are matched by name, whatever their order and case (`JawOpen`, `jawOpen`, `mouthSmile_L`,
-/// `mouthSmileL`, `HeadYaw`); 51-, 52- and 61-column exporters, a byte order mark, CR LF, quoted fields and fields
-/// separated by semicolons or tabs are all accepted. All 52 expressions come out, in the order of expression_names;
-/// missing ones are zero.
+/// `mouthSmileL`, `HeadYaw`); 51-, 52- and 61-column exporters, a byte order mark, CR LF, quoted fields, fields separated
+/// by semicolons or tabs and decimal commas are all accepted. All 52 expressions come out, in the order of
+/// expression_names; missing ones are zero. Rows without values, which recorders write while they see no face, are left
+/// out.
 ///
 /// Time is the column `Timecode`, HH:MM:SS:FF.sub with hours beyond 23 allowed, FF in frames of the take's rate (found
 /// from the largest FF and the steps, one of 24, 25, 30, 48, 50, 60, 120) and wrapping at midnight; or a column `time`,
-/// `seconds` or `timestamp` in seconds; or none, then rows are 1/60 s apart. Dropped frames leave gaps in `time`.
+/// `seconds` or `timestamp` in seconds or HH:MM:SS.sss; or `timestamp_ms`, `time_ms` or `milliseconds`; or none, then
+/// rows are 1/60 s apart. Dropped frames leave gaps in `time`.
 ///
 /// Angles are stored by the recorder in radians, positive yaw to the person's right, positive roll to the person's
 /// left; they come out in the signs of Performance. Throws phiz::Error(bad_input) with file:line for text where a

@@ -25,23 +25,32 @@ double median(std::vector<double> values) {
 }  // namespace
 
 std::optional<Timecode> parse_timecode(std::string_view text) {
-  std::array<std::string_view, 4> parts;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t colon = text.find_first_of(i == 2 ? ":;" : ":");
+  const std::size_t last = text.find_last_of(":;");
+  if (last == std::string_view::npos) return std::nullopt;
+  const auto clock = parse_clock(text.substr(0, last));
+  const auto frames = parse_number(text.substr(last + 1));
+  if (!clock || clock->frames != 0 || !frames) return std::nullopt;
+  if (!(*frames >= 0 && *frames < known_rates.back())) return std::nullopt;
+  return Timecode{clock->seconds, *frames};
+}
+
+std::optional<Timecode> parse_clock(std::string_view text) {
+  std::array<std::string_view, 3> parts;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::size_t colon = text.find(':');
     if (colon == std::string_view::npos) return std::nullopt;
     parts[i] = text.substr(0, colon);
     text.remove_prefix(colon + 1);
   }
-  parts[3] = text;
+  parts[2] = text;
   const auto hours = parse_integer(parts[0]);
   const auto minutes = parse_integer(parts[1]);
-  const auto seconds = parse_integer(parts[2]);
-  const auto frames = parse_number(parts[3]);
-  if (!hours || !minutes || !seconds || !frames) return std::nullopt;
-  if (*hours < 0 || *hours > 9999 || *minutes < 0 || *minutes > 59 || *seconds < 0 || *seconds > 59)
+  const auto seconds = parse_number(parts[2]);
+  if (!hours || !minutes || !seconds) return std::nullopt;
+  if (*hours < 0 || *hours > 9999 || *minutes < 0 || *minutes > 59 || !(*seconds >= 0 && *seconds < 60))
     return std::nullopt;
-  if (!(*frames >= 0 && *frames < known_rates.back())) return std::nullopt;
-  return Timecode{(*hours * 60 + *minutes) * 60 + *seconds, *frames};
+  const double whole = std::floor(*seconds);
+  return Timecode{(*hours * 60 + *minutes) * 60 + static_cast<long long>(whole), *seconds - whole};
 }
 
 double timecode_rate(const std::vector<Timecode>& codes) {

@@ -18,6 +18,9 @@ struct Timecode {
 /// Nothing when the text is no time code. A semicolon before the frames (drop-frame notation) is accepted.
 std::optional<Timecode> parse_timecode(std::string_view text);
 
+/// HH:MM:SS or HH:MM:SS.sss, a time of day; `frames` is the fraction of the second, so the rate is 1.
+std::optional<Timecode> parse_clock(std::string_view text);
+
 /// The rate in which FF counts: of 24, 25, 30, 48, 50, 60, 120 above the largest FF the one that makes steps across a
 /// full second most like the others; where no second changes, 60 when it fits.
 double timecode_rate(const std::vector<Timecode>& codes);
