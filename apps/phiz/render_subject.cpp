@@ -67,6 +67,7 @@ Subject open_mesh(const SubjectOptions& options) {
   base->name = options.file;
   base->mesh = triangulate(polygons, &face);
   if (base->mesh.F.rows() == 0) reject(options.file, "it has no faces", "give a mesh with triangles or polygons");
+  if (suspect_unit(base->mesh.V).extent <= 0) reject(options.file, "all its vertices are in one place");
   Subject subject;
   const HeadStyle style = options.view.style;
   base->material = style == HeadStyle::skin    ? skin_material()

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <numeric>
 
@@ -31,37 +32,49 @@ std::vector<Corners> split_quad(const std::vector<Vector3d>& points, const Vecto
   return {{{0, 1, 3}}, {{1, 2, 3}}};
 }
 
+/// What is known of a corner of a polygon that is being cut.
+struct Ear {
+  double score = 0;  // the larger, the sooner the corner is cut; below zero when it is no ear
+  int blocker = -1;  // a corner inside the triangle, without which it might be an ear
+};
+
 /// Cuts the ear with the widest smallest angle first; a polygon without a proper ear is cut at its least bad corner.
 std::vector<Corners> clip_ears(const std::vector<Vector3d>& points, const Vector3d& normal) {
   std::vector<int> left(points.size());
   std::iota(left.begin(), left.end(), 0);
-  std::vector<Corners> triangles;
-  const auto at = [&](std::size_t i) -> const Vector3d& { return points[static_cast<std::size_t>(left[i])]; };
-  while (left.size() > 3) {
-    std::size_t best = 0;
-    double best_score = -2;
-    for (std::size_t i = 0; i < left.size(); ++i) {
-      const std::size_t before = (i + left.size() - 1) % left.size(), after = (i + 1) % left.size();
-      const double area = turn(points, normal, left[before], left[i], left[after]);
-      bool ear = area > 0;
-      for (std::size_t j = 0; ear && j < left.size(); ++j) {
-        if (j == before || j == i || j == after) continue;
-        ear = !(turn(points, normal, left[before], left[i], left[j]) >= 0 &&
-                turn(points, normal, left[i], left[after], left[j]) >= 0 &&
-                turn(points, normal, left[after], left[before], left[j]) >= 0);
-      }
-      const double edges_squared = (at(before) - at(i)).squaredNorm() + (at(i) - at(after)).squaredNorm() +
-                                   (at(after) - at(before)).squaredNorm();
-      const double shape = edges_squared > 0 ? area / (edges_squared * normal.norm() + 1e-300) : 0;
-      const double score = ear ? shape : shape - 1;
-      if (score > best_score) {
-        best_score = score;
-        best = i;
-      }
+  const auto look_at = [&](std::size_t i) {
+    const int a = left[(i + left.size() - 1) % left.size()], b = left[i], c = left[(i + 1) % left.size()];
+    const Vector3d &A = points[static_cast<std::size_t>(a)], &B = points[static_cast<std::size_t>(b)],
+                   &C = points[static_cast<std::size_t>(c)];
+    const double area = turn(points, normal, a, b, c);
+    Ear ear;
+    if (area > 0) {
+      const auto inside = [&](int p) {
+        return p != a && p != b && p != c && turn(points, normal, a, b, p) >= 0 && turn(points, normal, b, c, p) >= 0 &&
+               turn(points, normal, c, a, p) >= 0;
+      };
+      const auto found = std::find_if(left.begin(), left.end(), inside);
+      if (found != left.end()) ear.blocker = *found;
     }
-    const std::size_t before = (best + left.size() - 1) % left.size(), after = (best + 1) % left.size();
-    triangles.push_back({left[before], left[best], left[after]});
+    const double edges_squared = (A - B).squaredNorm() + (B - C).squaredNorm() + (C - A).squaredNorm();
+    const double shape = edges_squared > 0 ? area / (edges_squared * normal.norm() + 1e-300) : 0;
+    ear.score = area > 0 && ear.blocker < 0 ? shape : shape - 1;
+    return ear;
+  };
+  std::vector<Ear> ears;
+  for (std::size_t i = 0; i < left.size(); ++i) ears.push_back(look_at(i));
+  std::vector<Corners> triangles;
+  while (left.size() > 3) {
+    const auto best = static_cast<std::size_t>(
+        std::max_element(ears.begin(), ears.end(), [](const Ear& a, const Ear& b) { return a.score < b.score; }) -
+        ears.begin());
+    const int cut = left[best];
+    triangles.push_back({left[(best + left.size() - 1) % left.size()], cut, left[(best + 1) % left.size()]});
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(best));
+    ears.erase(ears.begin() + static_cast<std::ptrdiff_t>(best));
+    const std::size_t after = best % left.size(), before = (best + left.size() - 1) % left.size();
+    for (std::size_t i = 0; i < left.size(); ++i)
+      if (i == before || i == after || ears[i].blocker == cut) ears[i] = look_at(i);
   }
   triangles.push_back({left[0], left[1], left[2]});
   return triangles;

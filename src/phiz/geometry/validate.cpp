@@ -15,12 +15,21 @@ namespace phiz {
 
 namespace {
 
+constexpr double farthest = 1e12;             // of a coordinate, in any unit of a file; areas and volumes stay finite
+constexpr std::size_t most_corners = 10'000;  // of a polygon that is cut into triangles
+
 template <class Points>
 void require_finite(const Points& points, const char* noun, const std::string& where) {
-  if (points.allFinite()) return;
-  for (Eigen::Index i = 0; i < points.rows(); ++i)
+  if (points.size() == 0 || points.cwiseAbs().template maxCoeff<Eigen::PropagateNaN>() <= farthest) return;
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
     if (!points.row(i).allFinite())
       reject(where, fmt::format("{} {} is not finite", noun, i), "every coordinate must be a finite number");
+    const double largest = points.row(i).cwiseAbs().maxCoeff();
+    if (largest > farthest)
+      reject(where,
+             fmt::format("{} {} has a coordinate of {:.3g}, at most {:g} is possible", noun, i, largest, farthest),
+             "is the file damaged?");
+  }
 }
 
 void require_index(int index, Eigen::Index count, const char* noun, Eigen::Index element, const char* target,
@@ -61,6 +70,9 @@ void validate(const PolygonMesh& mesh, const std::string& where) {
     const auto element = static_cast<Eigen::Index>(f);
     const auto& face = mesh.faces[f];
     if (face.size() < 3) reject(where, fmt::format("face {} has {} corners, expected at least 3", f, face.size()));
+    if (face.size() > most_corners)
+      reject(where, fmt::format("face {} has {} corners, expected at most {}", f, face.size(), most_corners),
+             "cut it into smaller ones");
     for (const int v : face) require_index(v, mesh.V.rows(), "face", element, "vertex", where);
     std::vector<int> sorted = face;
     std::sort(sorted.begin(), sorted.end());

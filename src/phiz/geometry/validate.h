@@ -10,11 +10,11 @@
 
 namespace phiz {
 
-/// Accepts any number of vertices and triangles; refuses NaN and infinite coordinates, indices out of range,
-/// triangles that use a vertex twice, FUV of another length than F.
+/// Accepts any number of vertices and triangles; refuses NaN, infinite and absurdly large coordinates, indices out of
+/// range, triangles that use a vertex twice, FUV of another length than F.
 void validate(const TriangleMesh& mesh, const std::string& where);
 
-/// The same for polygons: at least three corners, no corner twice, one uv per corner, groups in range.
+/// The same for polygons: three to 10,000 corners, no corner twice, one uv per corner, groups in range.
 void validate(const PolygonMesh& mesh, const std::string& where);
 
 /// Also refuses tets whose volume is not positive (inverted or flat to rounding) and a region list of another length.
