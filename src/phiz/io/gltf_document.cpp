@@ -168,7 +168,11 @@ void GltfDocument::fetch_buffers(const std::string& folder) {
       const bool inside = !folder.empty() && path.is_relative() &&
                           std::find(path.begin(), path.end(), std::filesystem::path("..")) == path.end();
       if (!inside) reject(where(item), "refers to " + quoted_word(uri) + ", which is not a file beside it");
-      content = read_bytes((std::filesystem::path(folder) / path).string());
+      try {
+        content = read_bytes((std::filesystem::path(folder) / path).string());
+      } catch (const Error& error) {
+        reject(where(item), error.what());
+      }
     }
     if (content.size() < static_cast<std::size_t>(*length)) {
       reject(where(item), fmt::format("{} bytes, byteLength claims {}", content.size(), *length), "it is cut off");

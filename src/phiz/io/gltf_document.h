@@ -23,6 +23,8 @@ class GltfDocument {
   /// File and item for messages: "a.glb: meshes[2]".
   std::string where(const std::string& item) const { return where_ + ": " + item; }
 
+  const nlohmann::json& root() const { return document_; }
+
   /// Members of objects. `item` names the object in messages.
   std::optional<long long> integer(const nlohmann::json& object, const char* name, const std::string& item) const;
   std::optional<double> number(const nlohmann::json& object, const char* name, const std::string& item) const;

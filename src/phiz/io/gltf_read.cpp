@@ -29,6 +29,7 @@ class GltfReader {
     for (const json& m : doc_.list("meshes")) scene_.meshes.push_back(mesh(m));
     for (const json& n : doc_.list("nodes")) scene_.nodes.push_back(node(n));
     require_trees();
+    check_scenes();
     for (const json& a : doc_.list("animations")) scene_.animations.push_back(animation(a));
     return std::move(scene_);
   }
@@ -54,7 +55,7 @@ class GltfReader {
     const std::string item = fmt::format("meshes[{}]", scene_.meshes.size());
     GltfMesh result;
     result.name = doc_.text(m, "name");
-    if (!m.is_object() || !m.contains("primitives") || !m["primitives"].is_array()) {
+    if (!m.is_object() || !m.contains("primitives") || !m["primitives"].is_array() || m["primitives"].empty()) {
       reject(doc_.where(item), "has no primitives");
     }
     for (const json& p : m["primitives"]) {
@@ -175,16 +176,30 @@ class GltfReader {
       result.rotation.normalize();
     }
     result.mesh = doc_.row(n, "mesh", "meshes", item).value_or(-1);
-    if (n.contains("children")) {
-      if (!n["children"].is_array()) reject(doc_.where(item), "'children' is not a list");
-      const auto count = doc_.list("nodes").size();
-      for (const json& child : n["children"]) {
-        const double row = child.is_number() ? child.get<double>() : -1;
-        if (!(row >= 0) || row >= static_cast<double>(count)) reject(doc_.where(item), "a child is not a node");
-        result.children.push_back(static_cast<int>(row));
-      }
-    }
+    result.children = node_rows(n, "children", item);
     return result;
+  }
+
+  /// A list of nodes, which may be absent.
+  std::vector<int> node_rows(const json& object, const char* name, const std::string& item) const {
+    std::vector<int> rows;
+    if (!object.is_object()) reject(doc_.where(item), "is not an object");
+    if (!object.contains(name)) return rows;
+    if (!object[name].is_array()) reject(doc_.where(item), fmt::format("'{}' is not a list", name));
+    const auto count = static_cast<double>(doc_.list("nodes").size());
+    for (const json& entry : object[name]) {
+      const double row = entry.is_number() ? entry.get<double>() : -1;
+      if (!(row >= 0 && row < count)) reject(doc_.where(item), fmt::format("an entry of '{}' is not a node", name));
+      rows.push_back(static_cast<int>(row));
+    }
+    return rows;
+  }
+
+  /// Scenes are not kept, since every node is read; but what they say must make sense.
+  void check_scenes() const {
+    const json& scenes = doc_.list("scenes");
+    for (std::size_t i = 0; i < scenes.size(); ++i) node_rows(scenes[i], "nodes", fmt::format("scenes[{}]", i));
+    doc_.row(doc_.root(), "scene", "scenes", "scene");
   }
 
   static void decompose(const Eigen::Matrix4d& m, GltfNode& node) {

@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "phiz/core/error.h"
+#include "phiz/geometry/validate.h"
 #include "phiz/io/file_bytes.h"
 #include "phiz/io/output_file.h"
 #include "phiz/io/polygons.h"
@@ -222,7 +223,9 @@ std::string one_line(std::string name) {
 }  // namespace
 
 PolygonMesh parse_obj(std::string_view text, const std::string& where) {
-  return ObjParser(text, where).parse();
+  PolygonMesh mesh = ObjParser(text, where).parse();
+  validate(mesh, where);
+  return mesh;
 }
 
 PolygonMesh read_obj(const std::string& path) {

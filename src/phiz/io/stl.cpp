@@ -12,6 +12,7 @@
 
 #include "phiz/core/error.h"
 #include "phiz/geometry/surface.h"
+#include "phiz/geometry/validate.h"
 #include "phiz/io/byte_order.h"
 #include "phiz/io/file_bytes.h"
 #include "phiz/io/output_file.h"
@@ -89,6 +90,7 @@ TriangleMesh parse_ascii(std::string_view text, const std::string& where) {
   Welder welder;
   LineScanner lines(text);
   std::vector<std::string_view> words;
+  bool in_facet = false, ended = false;
   while (lines.next()) {
     split_words(lines.line(), words);
     if (words.empty()) continue;
@@ -106,18 +108,20 @@ TriangleMesh parse_ascii(std::string_view text, const std::string& where) {
       welder.corner(p);
     } else if (words[0] == "endloop") {
       if (!welder.between_triangles()) reject(here(), "a loop whose number of vertices is not three");
-    } else if (words[0] != "facet" && words[0] != "outer" && words[0] != "endfacet" && words[0] != "solid" &&
-               words[0] != "endsolid") {
+    } else if (words[0] == "facet" || words[0] == "endfacet") {
+      in_facet = words[0] == "facet";
+    } else if (words[0] == "solid" || words[0] == "endsolid") {
+      ended = words[0] == "endsolid";
+    } else if (words[0] != "outer") {
       reject(here(), fmt::format("expected an STL keyword, found {}", quoted_word(words[0])));
     }
   }
-  if (!welder.between_triangles()) reject(where, "the file ends inside a triangle", "it may be cut off");
+  if (!welder.between_triangles() || in_facet) reject(where, "the file ends inside a triangle", "it may be cut off");
+  if (!ended) reject(where, "the file ends without 'endsolid'", "it may be cut off");
   return welder.mesh(where);
 }
 
-}  // namespace
-
-TriangleMesh parse_stl(std::string_view bytes, const std::string& where) {
+TriangleMesh parse_either(std::string_view bytes, const std::string& where) {
   // Binary files may begin with "solid" too; the size decides.
   if (bytes.size() >= header_bytes) {
     const std::size_t count = load_number<std::uint32_t>(bytes, 80);
@@ -131,6 +135,14 @@ TriangleMesh parse_stl(std::string_view bytes, const std::string& where) {
   }
   if (!trimmed(bytes).starts_with("solid")) reject(where, "not an STL file: neither binary nor beginning with 'solid'");
   return parse_ascii(bytes, where);
+}
+
+}  // namespace
+
+TriangleMesh parse_stl(std::string_view bytes, const std::string& where) {
+  TriangleMesh mesh = parse_either(bytes, where);
+  validate(mesh, where);
+  return mesh;
 }
 
 TriangleMesh read_stl(const std::string& path) {
