@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "phiz/core/error.h"
 #include "report.h"
 #include "verbs.h"
 
@@ -27,6 +28,8 @@ void add_inspect(CLI::App& app) {
     const nlohmann::json description = inspect(arguments->file);
     if (!arguments->report.wanted()) arguments->report.print(readable(description));
     arguments->report.write(description);
+    for (const nlohmann::json& problem : description.value("problems", nlohmann::json::array()))
+      reject(arguments->file, problem.get<std::string>());
   });
 }
 

@@ -83,6 +83,23 @@ TEST(Triangulate, AStarKeepsItsAreaAndOrientation) {
   EXPECT_NEAR(N.col(2).sum() / 2, area, 1e-13);
 }
 
+TEST(Triangulate, AFaceOfThousandsOfCornersIsCutIntoItsArea) {
+  constexpr int corners = 3000;  // of a star with shallow spikes
+  PolygonMesh mesh;
+  mesh.V = MatrixX3d::Zero(corners, 3);
+  mesh.faces.resize(1);
+  double area = 0;
+  for (int i = 0; i < corners; ++i) {
+    const double radius = i % 2 == 0 ? 1 : 0.9, angle = 2 * std::numbers::pi * i / corners;
+    mesh.V.row(i) << radius * std::cos(angle), radius * std::sin(angle), 0;
+    mesh.faces[0].push_back(i);
+    area += 0.5 * 0.9 * std::sin(2 * std::numbers::pi / corners);
+  }
+  const TriangleMesh cut = triangulate(mesh);
+  ASSERT_EQ(cut.F.rows(), corners - 2);
+  EXPECT_NEAR(triangle_areas(cut.V, cut.F).sum(), area, 1e-9);
+}
+
 TEST(Triangulate, TextureCoordinatesAndOwnersFollow) {
   PolygonMesh mesh = polygon({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 0, 0}});
   mesh.faces = {{0, 1, 2, 3}, {1, 4, 2}};

@@ -49,6 +49,20 @@ TEST(ValidateTriangles, NamesFileElementAndReason) {
   EXPECT_NE(refusal([&] { validate(mesh, "a.obj"); }), "");
 }
 
+TEST(ValidateTriangles, RefusesCoordinatesWhoseAreasWouldOverflow) {
+  TriangleMesh mesh = box({0, 0, 0}, {1, 1, 1});
+  mesh.V(2, 0) = -1e200;
+  EXPECT_NE(refusal([&] { validate(mesh, "a.obj"); }).find("vertex 2 has a coordinate of 1e+200"), std::string::npos);
+}
+
+TEST(ValidatePolygons, RefusesFacesOfTooManyCorners) {
+  PolygonMesh mesh;
+  mesh.V = MatrixX3d::Random(20'000, 3);
+  mesh.faces.resize(1);
+  for (int v = 0; v < 20'000; ++v) mesh.faces[0].push_back(v);
+  EXPECT_NE(refusal([&] { validate(mesh, "p"); }).find("face 0 has 20000 corners"), std::string::npos);
+}
+
 TEST(ValidatePolygons, ChecksCornersTextureAndGroups) {
   PolygonMesh mesh;
   mesh.V = MatrixX3d::Random(5, 3);

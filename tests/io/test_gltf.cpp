@@ -141,6 +141,11 @@ TEST(Gltf, names_the_item_that_is_wrong) {
                   "POSITION");
   EXPECT_REJECTED(parse_gltf(document(R"("nodes":[{"children":[1]},{"children":[0]}])"), "a"), "ancestor");
   EXPECT_REJECTED(parse_gltf(document(R"("nodes":[{"children":[2]},{"children":[2]},{}])"), "a"), "two parents");
+  EXPECT_REJECTED(parse_gltf(document(R"("nodes":[{}],"scenes":[{"nodes":[1]}])"), "a"), "scenes[0]");
+  EXPECT_REJECTED(parse_gltf(document(R"("nodes":[{}],"scenes":[{"nodes":[0]}],"scene":4)"), "a"), "scene");
+  EXPECT_REJECTED(parse_gltf(document(R"("meshes":[{"primitives":[]}])"), "a"), "no primitives");
+  EXPECT_REJECTED(parse_gltf(R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":1,"uri":"none.bin"}]})", "a", "."),
+                  "a: buffers[0]: ");
   EXPECT_REJECTED(parse_gltf(document(R"("extensionsRequired":["KHR_draco_mesh_compression"])"), "a"), "KHR_draco");
   EXPECT_REJECTED(parse_gltf(R"({"asset":{"version":"1.0"}})", "a"), "version 2");
   EXPECT_REJECTED(parse_gltf("x", "a"), "neither GLB");

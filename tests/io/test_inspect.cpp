@@ -62,8 +62,22 @@ TEST(Inspect, every_kind_of_file_is_described) {
   for (const char* name : {"head.phiz", "model.phiz", "a.csv", "a.glb", "a.obj", "a.png"}) {
     EXPECT_GT(readable(inspect(folder.file(name))).size(), 50u) << name;
   }
+  for (const char* name : {"a.obj", "a.glb"}) EXPECT_FALSE(inspect(folder.file(name)).contains("problems")) << name;
   EXPECT_REJECTED(inspect(folder.file("a.xyz")), "does not exist");
   EXPECT_REJECTED(inspect(folder.file("none.phiz")), "does not exist");
+}
+
+TEST(Inspect, a_mesh_in_another_unit_is_described_with_the_problem) {
+  const TemporaryFolder folder;
+  TriangleMesh mesh = sample_tetrahedron();
+  mesh.V *= 250 / suspect_unit(mesh.V).extent;
+  for (const char* name : {"a.obj", "a.ply", "a.stl", "a.glb"}) {
+    write_mesh(folder.file(name), mesh);
+    const auto json = inspect(folder.file(name));
+    EXPECT_EQ(json["bounds"]["unit"], "millimetres") << name;
+    ASSERT_EQ(json["problems"].size(), 1u) << name;
+    EXPECT_NE(json["problems"][0].get<std::string>().find("0.001"), std::string::npos) << name;
+  }
 }
 
 }  // namespace

@@ -139,6 +139,9 @@ TEST(Stl, refuses_damaged_files) {
   EXPECT_REJECTED(parse_stl(bytes.substr(0, bytes.size() - 1), "a.stl"), "4 triangles");
   EXPECT_REJECTED(parse_stl("solid x\nfacet\nouter loop\nvertex 0 0 0\nendloop\n", "a.stl"), "a.stl:5");
   EXPECT_REJECTED(parse_stl("solid x\nendsolid\n", "a.stl"), "no triangles");
+  const std::string corners = "solid x\nfacet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n";
+  EXPECT_REJECTED(parse_stl(corners, "a.stl"), "inside a triangle");
+  EXPECT_REJECTED(parse_stl(corners + "endloop\nendfacet\n", "a.stl"), "endsolid");
   EXPECT_REJECTED(parse_stl("hello", "a.stl"), "not an STL file");
 }
 
@@ -158,9 +161,10 @@ TEST(MeshFile, names_the_unit_of_a_head_that_is_not_in_metres) {
   EXPECT_EQ(suspect_unit(head * 100).name, "centimetres");
   EXPECT_EQ(suspect_unit(head * 1000).name, "millimetres");
   EXPECT_EQ(suspect_unit(head * 1e-4).name, "unknown");
-  EXPECT_NO_THROW(require_metres(head, "a"));
-  EXPECT_REJECTED(require_metres(head * 1000, "a.obj"), "millimetres");
-  EXPECT_REJECTED(require_metres(MatrixX3d(), "a.obj"), "0 units");
+  EXPECT_EQ(unit_defect(head), "");
+  EXPECT_NE(unit_defect(head * 100).find("scale it by 0.01"), std::string::npos);
+  EXPECT_NE(unit_defect(head * 1000).find("millimetres, expected metres; scale it by 0.001"), std::string::npos);
+  EXPECT_EQ(unit_defect(MatrixX3d()), "");
 }
 
 TEST(OutputFile, leaves_nothing_behind_when_it_is_not_committed) {

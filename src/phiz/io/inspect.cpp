@@ -30,6 +30,11 @@ json size_of(const MatrixX3d& V) {
   return {{"min", {low[0], low[1], low[2]}}, {"max", {high[0], high[1], high[2]}}, {"unit", unit.name}};
 }
 
+void note_unit(json& description, const MatrixX3d& V) {
+  const std::string defect = unit_defect(V);
+  if (!defect.empty()) description["problems"] = {defect};
+}
+
 json describe_mesh(const std::string& path) {
   const PolygonMesh mesh = read_mesh(path);
   std::size_t triangles = 0, quads = 0;
@@ -44,6 +49,7 @@ json describe_mesh(const std::string& path) {
                  {"quads", quads},
                  {"texture_coordinates", mesh.UV.rows()},
                  {"bounds", size_of(mesh.V)}};
+  note_unit(result, mesh.V);
   if (!mesh.groups.empty()) result["groups"] = mesh.groups;
   if (mesh.faces.empty()) return result;
   const TriangleMesh surface = triangulate(mesh);
@@ -89,6 +95,10 @@ json describe_scene(const std::string& path) {
                           {"duration_s", duration}});
   }
   result["animations"] = animations;
+  const MatrixX3d points = flattened(scene).V;
+  if (points.rows() == 0) return result;
+  result["bounds"] = size_of(points);
+  note_unit(result, points);
   return result;
 }
 

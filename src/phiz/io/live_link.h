@@ -17,8 +17,8 @@ struct LiveLinkRecording {
 };
 
 /// Reads a recording. Columns are matched by name, whatever their order and case (`JawOpen`, `jawOpen`, `mouthSmile_L`,
-/// `mouthSmileL`, `HeadYaw`); 51-, 52- and 61-column exporters, a byte order mark, CR LF, quoted fields, fields separated
-/// by semicolons or tabs and decimal commas are all accepted. All 52 expressions come out, in the order of
+/// `mouthSmileL`, `HeadYaw`); 51-, 52- and 61-column exporters, a byte order mark, CR LF, quoted fields, fields
+/// separated by semicolons or tabs and decimal commas are all accepted. All 52 expressions come out, in the order of
 /// expression_names; missing ones are zero. Rows without values, which recorders write while they see no face, are left
 /// out.
 ///

@@ -62,16 +62,11 @@ SuspectedUnit suspect_unit(const MatrixX3d& V) {
   return unit;
 }
 
-void require_metres(const MatrixX3d& V, const std::string& where) {
+std::string unit_defect(const MatrixX3d& V) {
   const SuspectedUnit unit = suspect_unit(V);
-  if (unit.name == "metres") return;
-  if (unit.name == "unknown") {
-    reject(where, fmt::format("the mesh measures {:.4g} units, expected a head of about 0.25 metres", unit.extent),
-           "scale it to metres");
-  }
-  reject(where,
-         fmt::format("the mesh measures {:.4g} units and seems to be in {}, expected metres", unit.extent, unit.name),
-         fmt::format("scale it by {:g}", unit.metres));
+  if (unit.name == "metres" || unit.name == "unknown") return {};
+  return fmt::format("the mesh measures {:.4g} units and seems to be in {}, expected metres; scale it by {:g}",
+                     unit.extent, unit.name, unit.metres);
 }
 
 }  // namespace phiz

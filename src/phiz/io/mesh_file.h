@@ -25,7 +25,7 @@ struct SuspectedUnit {
 /// Judges by the longest side of the bounding box: 0.08 to 3 is metres, 8 to 80 centimetres, 80 to 3000 millimetres.
 SuspectedUnit suspect_unit(const MatrixX3d& V);
 
-/// Throws phiz::Error(bad_input) when suspect_unit does not say metres, naming the unit, the size and the mend.
-void require_metres(const MatrixX3d& V, const std::string& where);
+/// What to tell the user of a mesh in centimetres or millimetres: the unit, the size and the mend. Empty for others.
+std::string unit_defect(const MatrixX3d& V);
 
 }  // namespace phiz
