@@ -62,22 +62,19 @@ nlohmann::json as_json(int number, double time, const SolveStatistics& statistic
           {"ms", statistics.milliseconds}};
 }
 
-/// Goes on with the take at `path`; `finished` gets its frames, without positions where they are not needed to go on.
-TakeWriter resume_take(const std::string& path, const Take& head, std::vector<TakeFrame>& finished) {
-  TakeWriter writer = TakeWriter::resume(path, head);
-  if (writer.frames() == 0) return writer;
-  writer.finish();  // what a killed program left has no checksum yet
-  const TakeReader reader(path);
-  for (int f = 0; f < reader.frames(); ++f) {
-    finished.push_back(reader.frame(f));
-    finished.back().skin.resize(0, 3);
-    if (f + 1 != last_key_frame(reader.frames())) finished.back().volume.resize(0, 3);
-  }
-  return TakeWriter::resume(path, head);
+/// Refuses a frame of the take at `path` that was not made from this performance, or not in this way.
+void require_same_making(const TakeFrame& frame, int number, const FaceModel& model, const Performance& performance,
+                         const AnimateOptions& options, const std::string& path) {
+  const char* const mend = "choose another file or start anew, without --resume";
+  const VectorXd weights = shape_weights(match_expressions(model, performance), performance, number);
+  if (frame.time != performance.time[number] || frame.part_weights != weights)
+    reject(path, fmt::format("its frame for {:.3f} s was made from another performance", frame.time), mend);
+  const bool dynamic = frame.velocity.rows() > 0;
+  if (dynamic != options.simulation.dynamic)
+    reject(path, fmt::format("the take there was made with{} --dynamic", dynamic ? "" : "out"), mend);
 }
 
 void animate_model(const AnimateArguments& arguments) {
-  catch_interrupts();
   protect_inputs(arguments.output, {arguments.model, arguments.performance, arguments.save_model});
   protect_inputs(arguments.save_model, {arguments.model, arguments.performance});
   Performance performance = load_any_performance(arguments.performance);
@@ -102,8 +99,19 @@ void animate_model(const AnimateArguments& arguments) {
 
   const Take head = empty_take(model, performance, options);
   std::vector<TakeFrame> finished;
+  const auto keep = [&](const TakeFrame& frame) {
+    require_same_making(frame, options.first_frame + static_cast<int>(finished.size()), model, performance, options,
+                        arguments.output);
+    finished.push_back(frame);
+    finished.back().skin.resize(0, 3);
+    const int count = static_cast<int>(finished.size());
+    if (last_key_frame(count) == count) return;  // to go on from a key frame takes the state before it
+    finished.back().volume.resize(0, 3);
+    finished.back().velocity.resize(0, 3);
+  };
   TakeWriter writer =
-      arguments.resume ? resume_take(arguments.output, head, finished) : TakeWriter(arguments.output, head);
+      arguments.resume ? TakeWriter::resume(arguments.output, head, keep) : TakeWriter(arguments.output, head);
+  catch_interrupts();  // from here on there are frames to keep
   nlohmann::json statistics = nlohmann::json::array();
   std::vector<double> milliseconds;
   int unconverged = 0;

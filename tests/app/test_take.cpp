@@ -18,7 +18,11 @@ void expect_same_frames(const std::string& left, const std::string& right) {
   for (std::size_t f = 0; f < a.frames.size(); ++f) {
     EXPECT_EQ(a.frames[f].time, b.frames[f].time) << "frame " << f;
     EXPECT_TRUE(a.frames[f].skin == b.frames[f].skin) << "frame " << f;
+    EXPECT_TRUE(a.frames[f].volume == b.frames[f].volume) << "frame " << f;
+    EXPECT_TRUE(a.frames[f].velocity == b.frames[f].velocity) << "frame " << f;
     EXPECT_TRUE(a.frames[f].jaw == b.frames[f].jaw) << "frame " << f;
+    EXPECT_TRUE(a.frames[f].head.matrix() == b.frames[f].head.matrix()) << "frame " << f;
+    EXPECT_TRUE(a.frames[f].left_eye == b.frames[f].left_eye) << "frame " << f;
     EXPECT_EQ(a.frames[f].statistics.iterations, b.frames[f].statistics.iterations) << "frame " << f;
     EXPECT_EQ(a.frames[f].statistics.contacts, b.frames[f].statistics.contacts) << "frame " << f;
   }
@@ -44,43 +48,80 @@ TEST(Animate, ReportsEveryFrameAsJson) {
   }
 }
 
-TEST(Animate, InterruptedThenResumedEqualsUninterrupted) {
-  const ScratchFolder scratch;
-  const std::string take = scratch / "take.phiz";
-  const std::vector<std::string> command = {"animate", PHIZ_PREVIEW_MODEL, PHIZ_PERFORMANCE, "-o",
-                                            take,      "--frames",         "20:140"};
-  // A take of one frame tells how long the file is when the first frames are in it.
-  std::vector<std::string> single = command;
-  single[6] = "20:21";
-  ASSERT_EQ(phiz_command(single).code, 0);
-  const std::uintmax_t with_a_frame = std::filesystem::file_size(take);
+const std::vector<std::string> plain_animate = {"animate", PHIZ_PREVIEW_MODEL, PHIZ_PERFORMANCE};
 
+std::vector<std::string> with(std::vector<std::string> words, const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+/// Plays frames 20 to 140 into `take` and sends a signal as soon as the file there is longer than one with one frame.
+Outcome stop_on_the_way(const std::vector<std::string>& command, const std::string& take, std::uintmax_t with_a_frame,
+                        int signal_number) {
   bool sent = false;
-  const Outcome stopped = phiz_command(command, [&](pid_t child) {
+  Outcome stopped = phiz_command(with(command, {"-o", take, "--frames", "20:140"}), [&](pid_t child) {
     std::error_code none;
     const std::uintmax_t size = std::filesystem::file_size(take + ".part", none);
     if (sent || none || size <= with_a_frame) return;
-    ::kill(child, SIGINT);
+    ::kill(child, signal_number);
     sent = true;
   });
-  ASSERT_TRUE(sent) << stopped.err;
-  EXPECT_EQ(stopped.code, 1) << stopped.err;
-  EXPECT_NE(stopped.err.find("--resume"), std::string::npos) << stopped.err;
-  const TakeReader kept(take);
-  EXPECT_GT(kept.frames(), 0);
-  EXPECT_LT(kept.frames(), 120);
-  EXPECT_EQ(kept.head().frames_planned, 120);
+  EXPECT_TRUE(sent) << stopped.err;
+  return stopped;
+}
 
-  std::vector<std::string> resume = command;
-  resume.push_back("--resume");
-  const Outcome resumed = phiz_command(resume);
-  ASSERT_EQ(resumed.code, 0) << resumed.err;
+class Interrupted : public ::testing::TestWithParam<std::string> {};
 
-  std::vector<std::string> whole = command;
-  whole[4] = scratch / "whole.phiz";
-  const Outcome uninterrupted = phiz_command(whole);
+TEST_P(Interrupted, ThenResumedEqualsUninterrupted) {
+  const ScratchFolder scratch;
+  const std::string take = scratch / "take.phiz", whole = scratch / "whole.phiz";
+  const auto command = GetParam().empty() ? plain_animate : with(plain_animate, {GetParam()});
+  const Outcome uninterrupted = phiz_command(with(command, {"-o", whole, "--frames", "20:140"}));
   ASSERT_EQ(uninterrupted.code, 0) << uninterrupted.err;
-  expect_same_frames(take, scratch / "whole.phiz");
+
+  ASSERT_EQ(phiz_command(with(command, {"-o", take, "--frames", "20:21"})).code, 0);
+  const std::uintmax_t with_a_frame = std::filesystem::file_size(take);
+  for (const int signal_number : {SIGINT, SIGTERM, SIGHUP, SIGKILL}) {
+    const Outcome stopped = stop_on_the_way(command, take, with_a_frame, signal_number);
+    const bool killed = signal_number == SIGKILL;
+    EXPECT_EQ(stopped.code, killed ? 128 + SIGKILL : 1) << stopped.err;
+    EXPECT_EQ(stopped.err.find("--resume") == std::string::npos, killed) << stopped.err;
+    {
+      const TakeReader kept(killed ? take + ".part" : take);
+      EXPECT_GT(kept.frames(), 0);
+      EXPECT_LT(kept.frames(), 120);
+      EXPECT_EQ(kept.head().frames_planned, 120);
+    }
+    const Outcome resumed = phiz_command(with(command, {"-o", take, "--frames", "20:140", "--resume"}));
+    ASSERT_EQ(resumed.code, 0) << resumed.err;
+    expect_same_frames(take, whole);
+    EXPECT_FALSE(std::filesystem::exists(take + ".part"));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Animate, Interrupted, ::testing::Values("", "--dynamic"),
+                         [](const ::testing::TestParamInfo<std::string>& parameter) {
+                           return parameter.param.empty() ? "Static" : "Dynamic";
+                         });
+
+TEST(Animate, ATakeOfSomethingElseIsNotResumedAndStays) {
+  const ScratchFolder scratch;
+  const std::string take = scratch / "take.phiz";
+  const std::vector<std::string> command = with(plain_animate, {"-o", take});
+  ASSERT_EQ(phiz_command(with(command, {"--frames", "0:3"})).code, 0);
+  const std::string bytes = read_text(take);
+  const std::vector<std::pair<std::vector<std::string>, std::string>> others = {
+      {{"--frames", "0:9"}, "3 frames, not 9"},
+      {{"--frames", "60:63"}, "another performance"},
+      {{"--frames", "0:3", "--dynamic"}, "without --dynamic"},
+  };
+  for (const auto& [words, reason] : others) {
+    const Outcome outcome = phiz_command(with(with(command, words), {"--resume"}));
+    EXPECT_EQ(outcome.code, 3) << outcome.err;
+    EXPECT_NE(outcome.err.find(reason), std::string::npos) << outcome.err;
+    EXPECT_TRUE(read_text(take) == bytes);
+    EXPECT_FALSE(std::filesystem::exists(take + ".part"));
+  }
 }
 
 TEST(Animate, GivesTheSameFramesForAnyNumberOfThreads) {
@@ -91,15 +132,6 @@ TEST(Animate, GivesTheSameFramesForAnyNumberOfThreads) {
     ASSERT_EQ(outcome.code, 0) << outcome.err;
   }
   expect_same_frames(scratch / "1.phiz", scratch / "2.phiz");
-}
-
-TEST(Animate, ResumingATakeOfAnotherLengthIsRefused) {
-  const ScratchFolder scratch;
-  const std::string take = scratch / "take.phiz";
-  ASSERT_EQ(phiz_command({"animate", PHIZ_PREVIEW_MODEL, PHIZ_PERFORMANCE, "-o", take, "--frames", "0:3"}).code, 0);
-  const Outcome outcome =
-      phiz_command({"animate", PHIZ_PREVIEW_MODEL, PHIZ_PERFORMANCE, "-o", take, "--frames", "0:9", "--resume"});
-  EXPECT_EQ(outcome.code, 3) << outcome.err;
 }
 
 }  // namespace

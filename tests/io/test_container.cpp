@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <array>
 #include <csignal>
 #include <filesystem>
 
@@ -9,6 +12,7 @@
 #include "io/sample_nouns.h"
 #include "io/temporary_folder.h"
 #include "io/version1.h"
+#include "phiz/core/random.h"
 #include "phiz/io/container.h"
 #include "phiz/io/file_bytes.h"
 #include "phiz/io/output_file.h"
@@ -169,6 +173,63 @@ TEST(Container, a_killed_run_leaves_its_finished_frames) {
   for (std::size_t i = 3; i < 6; ++i) again.append(whole.frames[i]);
   again.finish();
   expect_same(whole, load_take(folder.file("killed/a.phiz")));
+}
+
+/// Writes a take in another process, which tells of each finished frame and is killed after some microseconds. Returns
+/// the number of frames that it told of.
+int write_and_kill(const std::string& path, const Take& take, std::uint32_t microseconds) {
+  std::array<int, 2> ends{};
+  if (::pipe(ends.data()) != 0) return -1;
+  const pid_t child = ::fork();
+  if (child == 0) {
+    TakeWriter writer(path, take);
+    for (const TakeFrame& frame : take.frames) {
+      writer.append(frame);
+      if (::write(ends[1], "x", 1) != 1) ::_exit(1);
+    }
+    for (;;) ::pause();
+  }
+  ::close(ends[1]);
+  ::usleep(microseconds);
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  int told = 0;
+  for (char c = 0; ::read(ends[0], &c, 1) == 1;) ++told;
+  ::close(ends[0]);
+  return told;
+}
+
+TEST(Container, a_program_killed_at_any_moment_loses_no_frame_that_it_finished) {
+  const TemporaryFolder folder;
+  const Take whole = sample_take(70);  // more than one block of the arrays of small entries
+  Random random(5);
+  for (int round = 0; round < 20; ++round) {
+    const std::string path = folder.file(std::to_string(round) + ".phiz");
+    const int told = write_and_kill(path, whole, random.below(60'000));
+    ASSERT_GE(told, 0);
+    const int kept = told > 0 ? TakeReader(path + ".part").frames() : 0;
+    ASSERT_GE(kept, told) << "round " << round;
+    int shown = 0;
+    TakeWriter writer = TakeWriter::resume(path, whole, [&shown](const TakeFrame&) { ++shown; });
+    EXPECT_EQ(shown, writer.frames());
+    for (auto i = static_cast<std::size_t>(writer.frames()); i < whole.frames.size(); ++i)
+      writer.append(whole.frames[i]);
+    writer.finish();
+    expect_same(whole, load_take(path));
+  }
+}
+
+TEST(Container, what_refuses_a_finished_frame_leaves_the_take_as_it_was) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.phiz");
+  const Take take = sample_take(3);
+  save(path, take);
+  const std::string bytes = read_bytes(path);
+  EXPECT_REJECTED(TakeWriter::resume(path, take, [](const TakeFrame&) { reject("a", "not mine"); }), "not mine");
+  EXPECT_TRUE(read_bytes(path) == bytes);
+  write_bytes(path + ".part", "no take");
+  EXPECT_REJECTED(TakeWriter::resume(path, take), "leave out --resume");
+  EXPECT_TRUE(read_bytes(path) == bytes);
 }
 
 TEST(Container, a_take_of_something_else_is_not_resumed) {

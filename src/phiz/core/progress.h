@@ -33,8 +33,8 @@ class Progress {
 /// One line about what is being done, on standard error; nothing when quiet.
 void announce(const std::string& what);
 
-/// From now on Ctrl-C (SIGINT) and SIGTERM set a flag instead of ending the process; a second Ctrl-C ends it. For work
-/// that asks interrupted() and keeps what is finished.
+/// From now on Ctrl-C (SIGINT), SIGTERM and the end of the terminal (SIGHUP, unless it is ignored) set a flag instead
+/// of ending the process; a second Ctrl-C ends it. For work that asks interrupted() and keeps what is finished.
 void catch_interrupts();
 /// True once the user has asked to stop. Long loops ask after each finished step.
 bool interrupted();

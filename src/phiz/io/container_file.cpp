@@ -116,6 +116,10 @@ std::recursive_mutex& hdf5_lock() {
 }
 
 ContainerFile::ContainerFile(std::string path, Hdf5Handle file) : path_(std::move(path)), file_(std::move(file)) {
+  open_root();
+}
+
+void ContainerFile::open_root() {
   std::error_code code;
   const auto bytes = std::filesystem::file_size(path_, code);
   const auto origin = std::make_shared<Hdf5Origin>(Hdf5Origin{path_, code ? 0 : bytes});
@@ -166,20 +170,14 @@ ContainerFile ContainerFile::create(const std::string& path, const std::string& 
   return result;
 }
 
-ContainerFile ContainerFile::reopen(const std::string& path) {
-  prepare_hdf5();
-  check_first_block(path);
-  write_first_block(path, first_block(unfinished, 0, 0));
-  const Hdf5Handle access = access_properties();
-  Hdf5Handle file = own_file(H5Fopen(path.c_str(), H5F_ACC_RDWR, access.get()));
-  if (!file.valid()) reject(path, "the file cannot be opened as HDF5", "it is damaged");
-  ContainerFile result(path, std::move(file));
-  result.read_root();
-  return result;
-}
-
 void ContainerFile::require_kind(const std::string& kind) const {
   if (kind_ != kind) reject(path_, fmt::format("the file holds a {}, expected a {}", kind_, kind));
+}
+
+void ContainerFile::rename(const std::string& path) {
+  rename_file(path_, path);
+  path_ = path;
+  open_root();
 }
 
 void ContainerFile::flush() {

@@ -21,8 +21,6 @@ class ContainerFile {
   static ContainerFile open(const std::string& path);
   /// Makes a new file of that kind ("head", ...) under exactly this name; it is marked as unfinished.
   static ContainerFile create(const std::string& path, const std::string& kind);
-  /// Opens a file to write on; it is marked as unfinished again.
-  static ContainerFile reopen(const std::string& path);
 
   ContainerFile(ContainerFile&&) = default;
   ContainerFile& operator=(ContainerFile&&) = default;
@@ -34,6 +32,8 @@ class ContainerFile {
   /// Refuses a file of another kind.
   void require_kind(const std::string& kind) const;
 
+  /// Gives the file another name.
+  void rename(const std::string& path);
   /// Brings everything written so far to the disk in a state that can be opened.
   void flush();
   /// Closes the file, writes its checksum and marks it as finished. Throws phiz::Error(failure).
@@ -41,6 +41,7 @@ class ContainerFile {
 
  private:
   ContainerFile(std::string path, Hdf5Handle file);
+  void open_root();
   void read_root();
 
   std::string path_;

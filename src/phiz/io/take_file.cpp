@@ -127,14 +127,13 @@ void require_room(const std::string& path, const TakeFrame& frame) {
   }
 }
 
-void append_frame(const Hdf5Group& root, FrameList& list, const TakeFrame& frame) {
+void add_frame(const Hdf5Group& root, FrameList& list, const TakeFrame& frame) {
   const Hdf5Group group = root.group("frame_data");
   if (!list.sizes) {
     list.sizes = sizes_of(frame);
     create_frames(group, *list.sizes);
   }
   store_frame(group, list.frames, frame);
-  root.set(count_name, list.frames + 1);
   ++list.frames;
 }
 
@@ -144,44 +143,65 @@ struct TakeWriter::State {
   std::string path;
   ContainerFile file;
   FrameList list;
+
+  /// Starts the .part file with the frames that another file has. It is whole from its first moment on, so that
+  /// whatever a killed program leaves can be resumed.
+  static std::unique_ptr<State> begin(const std::string& path, const Take& head, const TakeReader* other,
+                                      const std::function<void(const TakeFrame& frame)>& show) {
+    require_writable(path);
+    const DelayInterrupts delay;
+    const std::string temporary = temporary_name(part_name(path));
+    try {
+      ContainerFile file = ContainerFile::create(temporary, name_of(ContainerKind::take));
+      store_take_head(file.root(), head);
+      FrameList list = no_frames(head);
+      for (int i = 0; other != nullptr && i < other->frames(); ++i) {
+        const TakeFrame frame = other->frame(i);
+        if (show) show(frame);
+        add_frame(file.root(), list, frame);
+      }
+      file.root().set(count_name, list.frames);
+      file.flush();
+      file.rename(part_name(path));
+      return std::make_unique<State>(State{path, std::move(file), list});
+    } catch (...) {
+      std::remove(temporary.c_str());
+      throw;
+    }
+  }
 };
 
 TakeWriter::TakeWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 TakeWriter::TakeWriter(const std::string& path, const Take& head) {
   const std::scoped_lock lock(hdf5_lock());
-  require_writable(path);
-  ContainerFile file = ContainerFile::create(part_name(path), name_of(ContainerKind::take));
-  store_take_head(file.root(), head);
-  file.flush();
-  state_ = std::make_unique<State>(State{path, std::move(file), no_frames(head)});
+  state_ = State::begin(path, head, nullptr, {});
 }
 
-TakeWriter TakeWriter::resume(const std::string& path, const Take& head) {
+namespace {
+
+TakeReader open_to_resume(const std::string& path) {
+  try {
+    return TakeReader(path);
+  } catch (const Error& error) {
+    throw Error(error.kind(), std::string(error.what()) + "; leave out --resume to start anew");
+  }
+}
+
+}  // namespace
+
+TakeWriter TakeWriter::resume(const std::string& path, const Take& head,
+                              const std::function<void(const TakeFrame& frame)>& finished) {
   const std::scoped_lock lock(hdf5_lock());
   const std::string part = part_name(path);
-  if (!std::filesystem::exists(part)) {
-    if (!std::filesystem::exists(path)) return {path, head};
-    std::error_code code;
-    std::filesystem::copy_file(path, part, code);
-    if (code) fail("cannot write " + part + ": " + code.message(), "free some space");
-  }
-  try {
-    ContainerFile file = ContainerFile::reopen(part);
-    file.require_kind(name_of(ContainerKind::take));
-    const std::string different = difference(stored_take_head(file.root()), head);
-    if (!different.empty()) {
-      reject(path, "the take there cannot be resumed: " + different, "choose another file or start anew");
-    }
-    FrameList list = no_frames(head);
-    list.frames = stored_frame_count(file.root());
-    if (list.frames > 0) list.sizes = stored_sizes(file.root().group("frame_data"), list.frames);
-    return TakeWriter(std::make_unique<State>(State{path, std::move(file), list}));
-  } catch (...) {
-    // The copy was ours; what a killed program left stays for the user to look at.
-    if (std::filesystem::exists(path)) std::filesystem::remove(part);
-    throw;
-  }
+  const std::string there = std::filesystem::exists(part) ? part : path;
+  if (!std::filesystem::exists(there)) return {path, head};
+  const TakeReader reader = open_to_resume(there);
+  std::string different = difference(reader.head(), head);
+  if (different.empty() && reader.frames() > head.frames_planned) different = "it has more frames";
+  if (!different.empty())
+    reject(there, "the take there cannot be resumed: " + different, "choose another file or start anew");
+  return TakeWriter(State::begin(path, head, &reader, finished));
 }
 
 TakeWriter::TakeWriter(TakeWriter&&) noexcept = default;
@@ -205,7 +225,10 @@ void TakeWriter::append(const TakeFrame& frame) {
   if (!state_) fail("a frame was appended to a take that is finished");
   check_frame(state_->list, frame, state_->path);
   require_room(state_->path, frame);
-  append_frame(state_->file.root(), state_->list, frame);
+  // A frame is on the disk before it is counted: whenever the program is killed, what is counted is there.
+  add_frame(state_->file.root(), state_->list, frame);
+  state_->file.flush();
+  state_->file.root().set(count_name, state_->list.frames);
   state_->file.flush();
 }
 
@@ -271,8 +294,9 @@ void save(const std::string& path, const Take& take) {
     FrameList list = no_frames(take);
     for (const TakeFrame& frame : take.frames) {
       check_frame(list, frame, path);
-      append_frame(root, list, frame);
+      add_frame(root, list, frame);
     }
+    root.set(count_name, list.frames);
   });
 }
 

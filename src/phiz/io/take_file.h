@@ -6,6 +6,7 @@
 /// has. Only a killed program leaves a .part file behind; resume goes on with that too.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -19,9 +20,12 @@ class TakeWriter {
   /// frames_planned must be set. Throws phiz::Error(failure) when the file cannot be made.
   TakeWriter(const std::string& path, const Take& head);
 
-  /// Goes on with the take at `path` (or its .part file) that was interrupted; starts a new one when there is none.
-  /// Throws phiz::Error(bad_input) when the file there was made from another head, performance length or frame rate.
-  static TakeWriter resume(const std::string& path, const Take& head);
+  /// Goes on with the take at `path` (or its .part file) that was interrupted; starts a new one when there is none. The
+  /// finished frames are copied, and shown to `finished` on the way, which may throw to refuse them; until all are
+  /// copied, the old file stays. Throws phiz::Error(bad_input) when the file there was made from another head,
+  /// performance length or frame rate.
+  static TakeWriter resume(const std::string& path, const Take& head,
+                           const std::function<void(const TakeFrame& frame)>& finished = {});
 
   TakeWriter(TakeWriter&&) noexcept;
   TakeWriter& operator=(TakeWriter&&) noexcept;
