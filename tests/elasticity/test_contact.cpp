@@ -74,7 +74,7 @@ SolveOptions tight() {
   SolveOptions options;
   options.max_iterations = 400;
   options.step_tolerance = 1e-8;
-  options.penetration_tolerance = 1e-6;
+  options.penetration_tolerance = 5e-7;
   return options;
 }
 
@@ -82,12 +82,13 @@ TEST(Contact, PressedLipsDoNotPenetrateAndKeepTheirVolume) {
   const Lips lips;
   ContactScene contacts = lips.scene();
   ProjectiveDynamics solver(lips.body, contacts.candidates());
+  constexpr double thickness = 8e-3;
   MatrixX3d x = lips.body.rest;
   for (int step = 1; step <= 8; ++step) {
     lips.press(x, 5e-4 * step, 2e-4 * step);
     const SolveStatistics statistics = solver.solve(x, tight(), &contacts);
     EXPECT_TRUE(statistics.converged) << brief_report(statistics);
-    EXPECT_LT(contacts.penetration(x), 2e-6);
+    EXPECT_LT(contacts.penetration(x), 1e-4 * thickness);
   }
   EXPECT_LT(std::abs(solver.volume(x) / solver.rest_volume() - 1), 0.02);
   // Both lips gave way.
@@ -148,6 +149,58 @@ TEST(Contact, ARigidObstaclePushesAndFollowsItsPlacement) {
     EXPECT_LT(contacts.penetration(x), 2e-6);
   }
   EXPECT_NEAR(x.col(1).maxCoeff(), 0.01, 2e-3);
+}
+
+TEST(Contact, AtRestForcesArePushesAlongTheNormalsOfTouchedPlanesAndVanishElsewhere) {
+  // The conditions of a constrained minimum, on the solver's own state: gradient = C^T lambda, lambda >= 0.
+  const TetMesh mesh = box({0, 0, 0}, {0.03, 0.01, 0.03}, 8, 4, 8);
+  const ElasticBody body = body_of(mesh, {0.2, 1, 30}, [](const Vector3d& p) { return p.y() < 1e-9; });
+  const TetMesh plate = box({-0.05, 0, -0.05}, {0.05, 0.01, 0.05}, 1, 1, 1);
+  ContactScene contacts(body.rest.rows());
+  const int obstacle = contacts.add_rigid({plate.V, boundary_triangles(plate.T), {}, {}});
+  const Matrix3d tilt = Eigen::AngleAxisd(0.05, Vector3d::UnitZ()).toRotationMatrix();
+  Eigen::Isometry3d placed(Eigen::Translation3d(0.015, 0.0095, 0.015));
+  placed.linear() = tilt;
+  contacts.place(obstacle, Eigen::Isometry3d(Eigen::Translation3d(0, 1, 0)));
+  std::vector<int> top;
+  for (int v = 0; v < body.rest.rows(); ++v)
+    if (body.rest(v, 1) > 0.01 - 1e-9) top.push_back(v);
+  contacts.add_pair(Eigen::Map<VectorXi>(top.data(), static_cast<Eigen::Index>(top.size())), obstacle, -1, body.rest);
+  ProjectiveDynamics solver(body, contacts.candidates());
+  contacts.place(obstacle, placed);
+  MatrixX3d x = body.rest;
+  SolveOptions exact = tight();
+  exact.step_tolerance = 1e-10;
+  exact.max_iterations = 2000;
+  exact.penetration_tolerance = 1e-9;
+  const SolveStatistics statistics = solver.solve(x, exact, &contacts);
+  EXPECT_TRUE(statistics.converged) << brief_report(statistics);
+
+  MatrixX3d gradient;
+  solver.energy(x, &gradient);
+  const double scale = gradient.rowwise().norm().maxCoeff();
+  const Vector3d normal = -tilt.col(1);  // out of the plate's lower side
+  int pushed = 0, free = 0;
+  for (Eigen::Index v = 0; v < x.rows(); ++v) {
+    if (body.fixed[static_cast<std::size_t>(v)]) continue;
+    const double gap = normal.dot(Vector3d(x.row(v)) - placed.translation());
+    const Vector3d force = gradient.row(v);
+    const bool candidate = body.rest(v, 1) > 0.01 - 1e-9;
+    if (candidate && force.norm() > 1e-5 * scale) {
+      EXPECT_NEAR(gap, 0, 1e-9);                                             // it touches,
+      EXPECT_GT(force.dot(normal), 0);                                       // is pushed,
+      EXPECT_LT((force - force.dot(normal) * normal).norm(), 1e-5 * scale);  // and not held aside
+      ++pushed;
+    } else {
+      EXPECT_LT(force.norm(), 1e-5 * scale);
+      if (candidate) {
+        EXPECT_GT(gap, -1e-9);
+        ++free;
+      }
+    }
+  }
+  EXPECT_GT(pushed, 5);
+  EXPECT_GT(free, 5);
 }
 
 TEST(Contact, MultipliersSolveTheComplementarityProblem) {
