@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "command.h"
+#include "phiz/anatomy/expression_names.h"
+#include "phiz/io/container.h"
 #include "phiz/io/take_file.h"
 
 namespace phiz::testing {
@@ -32,6 +34,29 @@ TEST(Animate, SolvesEveryFrameOfThePerformance) {
   const Outcome outcome = phiz_command({"inspect", PHIZ_PREVIEW_TAKE, "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(nlohmann::json::parse(outcome.out).at("frames"), 300);
+}
+
+TEST(Animate, EveryExpressionAloneConvergesWithoutPenetrationOrLossOfVolume) {
+  const ScratchFolder scratch;
+  Performance performance;
+  performance.expressions.assign(expression_names.begin(), expression_names.end());
+  const auto count = static_cast<Eigen::Index>(expression_names.size());
+  performance.weights = MatrixXd::Identity(count, count);
+  performance.time = VectorXd::LinSpaced(count, 0, static_cast<double>(count - 1) / 30);
+  performance.frame_rate = 30;
+  performance.head = performance.left_eye = performance.right_eye = MatrixX3d::Zero(count, 3);
+  save(scratch / "each.phiz", performance);
+  const Outcome outcome =
+      phiz_command({"animate", PHIZ_PREVIEW_MODEL, scratch / "each.phiz", "-o", scratch / "take.phiz", "--json", "-"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto report = nlohmann::json::parse(outcome.out);
+  ASSERT_EQ(report.at("statistics").size(), expression_names.size());
+  for (std::size_t e = 0; e < expression_names.size(); ++e) {
+    const auto& frame = report.at("statistics").at(e);
+    EXPECT_TRUE(frame.at("converged").get<bool>()) << expression_names[e];
+    EXPECT_LE(frame.at("penetration_mm").get<double>(), 0.1) << expression_names[e];
+    EXPECT_LE(std::abs(frame.at("volume_change").get<double>()), 0.02) << expression_names[e];
+  }
 }
 
 TEST(Animate, ReportsEveryFrameAsJson) {

@@ -84,6 +84,20 @@ TEST(Simulation, PressedLipsMeetWithoutPenetrationOrLossOfVolume) {
   EXPECT_GT(overlap, 5e-4);
 }
 
+TEST(Simulation, AStiffVolumeKeepsEveryShapeWithinAPercentAndASoftOneDoesNot) {
+  double worst[2] = {0, 0};
+  for (int k = 0; k < 2; ++k) {
+    SimulationOptions options = exact();
+    options.solve.max_iterations = 3000;
+    options.weights.volume = k == 0 ? 1000 : 0;
+    Simulation simulation(model(), options);
+    for (const VectorXd& w : {weights(1, 0, 0), weights(0, 1, 0), weights(0, 0, 1), weights(0, 1, 1)})
+      worst[k] = std::max(worst[k], std::abs(simulation.solve_static(w).volume_change));
+  }
+  EXPECT_LT(worst[0], 0.01);
+  EXPECT_GT(worst[1], 2 * worst[0]);
+}
+
 TEST(Simulation, AJumpEndsWhereASlowMotionEnds) {
   Simulation jump(model(), exact()), slow(model(), exact());
   jump.solve_static(weights(1, 0.5, 0));
