@@ -73,11 +73,12 @@ void check_first_block(const std::string& path) {
   }
 }
 
-void write_first_block(const std::string& path, const std::string& block) {
-  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+/// `shown`: the name for messages.
+void write_first_block(const std::string& place, const std::string& block, const std::string& shown) {
+  std::fstream file(place, std::ios::binary | std::ios::in | std::ios::out);
   file.write(block.data(), static_cast<std::streamsize>(block.size()));
   file.close();
-  if (!file) fail("cannot write " + path, "free some space or choose another place");
+  if (!file) fail("cannot write " + shown, "free some space or choose another place");
 }
 
 Hdf5Handle own_file(hid_t id) {
@@ -115,13 +116,14 @@ std::recursive_mutex& hdf5_lock() {
   return mutex;
 }
 
-ContainerFile::ContainerFile(std::string path, Hdf5Handle file) : path_(std::move(path)), file_(std::move(file)) {
-  open_root();
+ContainerFile::Unpublished::~Unpublished() {
+  if (!name.empty()) std::remove(name.c_str());
 }
 
-void ContainerFile::open_root() {
+ContainerFile::ContainerFile(std::string path, std::unique_ptr<Unpublished> unpublished, Hdf5Handle file)
+    : path_(std::move(path)), unpublished_(std::move(unpublished)), file_(std::move(file)) {
   std::error_code code;
-  const auto bytes = std::filesystem::file_size(path_, code);
+  const auto bytes = std::filesystem::file_size(place(), code);
   const auto origin = std::make_shared<Hdf5Origin>(Hdf5Origin{path_, code ? 0 : bytes});
   root_ = Hdf5Group(Hdf5Handle(H5Gopen2(file_.get(), "/", H5P_DEFAULT), H5Gclose), origin, "");
 }
@@ -145,20 +147,22 @@ ContainerFile ContainerFile::open(const std::string& path) {
   const Hdf5Handle access = access_properties();
   Hdf5Handle file = own_file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()));
   if (!file.valid()) reject(path, "the file cannot be opened as HDF5", "it is damaged");
-  ContainerFile result(path, std::move(file));
+  ContainerFile result(path, nullptr, std::move(file));
   result.read_root();
   return result;
 }
 
 ContainerFile ContainerFile::create(const std::string& path, const std::string& kind) {
   prepare_hdf5();
-  make_parent_folder(path);
+  require_writable(path);
+  auto unpublished = std::make_unique<Unpublished>(Unpublished{temporary_name(path)});
+  const std::string place = unpublished->name;
   const Hdf5Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_userblock(creation.get(), block_bytes);
   const Hdf5Handle access = access_properties();
-  Hdf5Handle file = own_file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()));
-  if (!file.valid()) fail("cannot write " + path, "check the folder and its permissions");
-  ContainerFile result(path, std::move(file));
+  Hdf5Handle file = own_file(H5Fcreate(place.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()));
+  if (!file.valid()) fail("cannot write " + path, "is the disk full?");
+  ContainerFile result(path, std::move(unpublished), std::move(file));
   result.root_.set("format", std::string("phiz"));
   result.root_.set("version", container_version);
   result.root_.set("kind", kind);
@@ -166,7 +170,7 @@ ContainerFile ContainerFile::create(const std::string& path, const std::string& 
   result.kind_ = kind;
   result.version_ = container_version;
   result.flush();
-  write_first_block(path, first_block(unfinished, 0, 0));
+  write_first_block(place, first_block(unfinished, 0, 0), path);
   return result;
 }
 
@@ -174,10 +178,11 @@ void ContainerFile::require_kind(const std::string& kind) const {
   if (kind_ != kind) reject(path_, fmt::format("the file holds a {}, expected a {}", kind_, kind));
 }
 
-void ContainerFile::rename(const std::string& path) {
-  rename_file(path_, path);
-  path_ = path;
-  open_root();
+void ContainerFile::publish() {
+  if (!unpublished_) return;
+  rename_file(place(), path_);
+  unpublished_->name.clear();
+  unpublished_.reset();
 }
 
 void ContainerFile::flush() {
@@ -188,27 +193,20 @@ void ContainerFile::finish() {
   flush();
   root_ = Hdf5Group();
   if (!file_.close()) fail("cannot write " + path_, "is the disk full?");
-  std::ifstream file(path_, std::ios::binary);
+  std::ifstream file(place(), std::ios::binary);
   file.seekg(block_bytes);
   const Rest rest = read_rest(file);
-  write_first_block(path_, first_block(finished, rest.checksum, rest.length));
+  write_first_block(place(), first_block(finished, rest.checksum, rest.length), path_);
 }
 
 void write_container(const std::string& path, const std::string& kind,
                      const std::function<void(const Hdf5Group& root)>& fill) {
   const std::scoped_lock lock(hdf5_lock());
-  require_writable(path);
   const DelayInterrupts delay;
-  const std::string temporary = temporary_name(path);
-  try {
-    ContainerFile file = ContainerFile::create(temporary, kind);
-    fill(file.root());
-    file.finish();
-    rename_file(temporary, path);
-  } catch (...) {
-    std::remove(temporary.c_str());
-    throw;
-  }
+  ContainerFile file = ContainerFile::create(path, kind);
+  fill(file.root());
+  file.finish();
+  file.publish();
 }
 
 ContainerKind kind_of(const std::string& path) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <string>
 
@@ -19,7 +20,8 @@ class ContainerFile {
  public:
   /// Opens for reading: checks the first block, the checksum and the version. Throws phiz::Error(bad_input).
   static ContainerFile open(const std::string& path);
-  /// Makes a new file of that kind ("head", ...) under exactly this name; it is marked as unfinished.
+  /// Makes a new file of that kind ("head", ...), marked as unfinished. It lies beside `path` under a temporary name
+  /// until it is published; if it never is, it leaves nothing behind.
   static ContainerFile create(const std::string& path, const std::string& kind);
 
   ContainerFile(ContainerFile&&) = default;
@@ -32,19 +34,25 @@ class ContainerFile {
   /// Refuses a file of another kind.
   void require_kind(const std::string& kind) const;
 
-  /// Gives the file another name.
-  void rename(const std::string& path);
+  /// Gives a new file its name, in the place of what was there.
+  void publish();
   /// Brings everything written so far to the disk in a state that can be opened.
   void flush();
   /// Closes the file, writes its checksum and marks it as finished. Throws phiz::Error(failure).
   void finish();
 
  private:
-  ContainerFile(std::string path, Hdf5Handle file);
-  void open_root();
+  struct Unpublished {
+    std::string name;
+    ~Unpublished();
+  };
+  ContainerFile(std::string path, std::unique_ptr<Unpublished> unpublished, Hdf5Handle file);
   void read_root();
+  /// Where the file lies now.
+  const std::string& place() const { return unpublished_ ? unpublished_->name : path_; }
 
   std::string path_;
+  std::unique_ptr<Unpublished> unpublished_;
   Hdf5Handle file_;
   Hdf5Group root_;
   std::string kind_;

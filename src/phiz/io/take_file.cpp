@@ -150,24 +150,18 @@ struct TakeWriter::State {
                                       const std::function<void(const TakeFrame& frame)>& show) {
     require_writable(path);
     const DelayInterrupts delay;
-    const std::string temporary = temporary_name(part_name(path));
-    try {
-      ContainerFile file = ContainerFile::create(temporary, name_of(ContainerKind::take));
-      store_take_head(file.root(), head);
-      FrameList list = no_frames(head);
-      for (int i = 0; other != nullptr && i < other->frames(); ++i) {
-        const TakeFrame frame = other->frame(i);
-        if (show) show(frame);
-        add_frame(file.root(), list, frame);
-      }
-      file.root().set(count_name, list.frames);
-      file.flush();
-      file.rename(part_name(path));
-      return std::make_unique<State>(State{path, std::move(file), list});
-    } catch (...) {
-      std::remove(temporary.c_str());
-      throw;
+    ContainerFile file = ContainerFile::create(part_name(path), name_of(ContainerKind::take));
+    store_take_head(file.root(), head);
+    FrameList list = no_frames(head);
+    for (int i = 0; other != nullptr && i < other->frames(); ++i) {
+      const TakeFrame frame = other->frame(i);
+      if (show) show(frame);
+      add_frame(file.root(), list, frame);
     }
+    file.root().set(count_name, list.frames);
+    file.flush();
+    file.publish();
+    return std::make_unique<State>(State{path, std::move(file), list});
   }
 };
 
