@@ -7,10 +7,12 @@
 #include <new>
 #include <string>
 
+#include "options.h"
 #include "phiz/core/error.h"
 #include "phiz/core/parallel.h"
 #include "phiz/core/progress.h"
 #include "phiz/core/version.h"
+#include "usage.h"
 #include "verbs.h"
 
 namespace {
@@ -35,7 +37,7 @@ int run(int argc, char** argv) {
   int threads = 0;
   bool quiet = false;
   std::unique_ptr<phiz::ThreadLimit> limit;
-  app.add_option("--threads", threads, "Number of threads; 0 means all cores")->check(CLI::Range(0, 1024));
+  app.add_option("--threads", threads, "Number of threads; 0 means all cores")->check(phiz::between(0, 1024));
   app.add_flag("--quiet,-q", quiet, "No progress on standard error");
   app.parse_complete_callback([&] {
     limit = std::make_unique<phiz::ThreadLimit>(threads);
@@ -51,9 +53,10 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& event) {
-    const bool asked = event.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);  // --help, --version
-    app.exit(event);
-    return asked ? 0 : 2;
+    if (event.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success))
+      return app.exit(event);  // --help, --version
+    if (argc <= 1) std::fputs(app.help().c_str(), stderr);
+    return complain(phiz::usage_mistake(app, event).c_str(), 2);
   }
   return 0;
 }

@@ -196,7 +196,7 @@ void run_render(RenderArguments a) {
   const std::string extension = lower_extension(a.output);
   const bool film = extension == ".mp4";
   if (!film && extension != ".png") misuse("the output '" + a.output + "' must end in .png or .mp4");
-  if (film && a.sheet) misuse("--sheet makes a picture; give an output that ends in .png");
+  if (film && (a.sheet || a.all_expressions)) misuse("a sheet is a picture; give an output that ends in .png");
   if (!a.subject.quantity.empty() || !a.subject.values.empty()) a.style = "heat";
   a.subject.view.style = head_style(a.style);
   if (!a.cut.empty()) a.subject.view.plane = cut_plane(a.cut);
