@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <chrono>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "command.h"
 #include "phiz/anatomy/expression_names.h"
@@ -80,14 +82,14 @@ std::vector<std::string> with(std::vector<std::string> words, const std::vector<
   return words;
 }
 
-/// Plays frames 20 to 140 into `take` and sends a signal as soon as the file there is longer than one with one frame.
-Outcome stop_on_the_way(const std::vector<std::string>& command, const std::string& take, std::uintmax_t with_a_frame,
+/// Plays frames 20 to 140 into `take` and sends a signal as soon as the file there has reached some size.
+Outcome stop_on_the_way(const std::vector<std::string>& command, const std::string& take, std::uintmax_t bytes,
                         int signal_number) {
   bool sent = false;
   Outcome stopped = phiz_command(with(command, {"-o", take, "--frames", "20:140"}), [&](pid_t child) {
     std::error_code none;
     const std::uintmax_t size = std::filesystem::file_size(take + ".part", none);
-    if (sent || none || size <= with_a_frame) return;
+    if (sent || none || size <= bytes) return;
     ::kill(child, signal_number);
     sent = true;
   });
@@ -105,9 +107,12 @@ TEST_P(Interrupted, ThenResumedEqualsUninterrupted) {
   ASSERT_EQ(uninterrupted.code, 0) << uninterrupted.err;
 
   ASSERT_EQ(phiz_command(with(command, {"-o", take, "--frames", "20:21"})).code, 0);
-  const std::uintmax_t with_a_frame = std::filesystem::file_size(take);
-  for (const int signal_number : {SIGINT, SIGTERM, SIGHUP, SIGKILL}) {
-    const Outcome stopped = stop_on_the_way(command, take, with_a_frame, signal_number);
+  const std::uintmax_t with_a_frame = std::filesystem::file_size(take), all = std::filesystem::file_size(whole);
+  // Soon after the first frame, and before and after the later key frames.
+  const std::vector<std::pair<int, std::uintmax_t>> stops = {{SIGINT, 0}, {SIGTERM, 22}, {SIGHUP, 46}, {SIGKILL, 60}};
+  for (const auto& [signal_number, frames] : stops) {
+    const std::uintmax_t bytes = with_a_frame + frames * (all - with_a_frame) / 119;
+    const Outcome stopped = stop_on_the_way(command, take, bytes, signal_number);
     const bool killed = signal_number == SIGKILL;
     EXPECT_EQ(stopped.code, killed ? 128 + SIGKILL : 1) << stopped.err;
     EXPECT_EQ(stopped.err.find("--resume") == std::string::npos, killed) << stopped.err;
@@ -122,6 +127,31 @@ TEST_P(Interrupted, ThenResumedEqualsUninterrupted) {
     expect_same_frames(take, whole);
     EXPECT_FALSE(std::filesystem::exists(take + ".part"));
   }
+}
+
+TEST_P(Interrupted, KilledAgainAndAgainEqualsUninterrupted) {
+  using Clock = std::chrono::steady_clock;
+  const ScratchFolder scratch;
+  const std::string take = scratch / "take.phiz", whole = scratch / "whole.phiz";
+  auto command = with(plain_animate, {"--frames", "20:80", "--resume"});
+  if (!GetParam().empty()) command.push_back(GetParam());
+  const Clock::time_point start = Clock::now();
+  ASSERT_EQ(phiz_command(with(command, {"-o", whole})).code, 0);
+  const Clock::duration duration = Clock::now() - start;
+  // At moments from the first to the last: while the model is read, at the first frames, while frames are copied or
+  // played again, when the file is finished.
+  constexpr int rounds = 12;
+  for (int round = 0; round < rounds; ++round) {
+    const Clock::time_point moment = Clock::now() + duration * (2 * round + 1) / (2 * rounds);
+    const Outcome outcome = phiz_command(with(command, {"-o", take}), [&](pid_t child) {
+      if (Clock::now() >= moment) ::kill(child, SIGKILL);
+    });
+    EXPECT_TRUE(outcome.code == 128 + SIGKILL || outcome.code == 0) << outcome.err;
+  }
+  const Outcome resumed = phiz_command(with(command, {"-o", take}));
+  ASSERT_EQ(resumed.code, 0) << resumed.err;
+  expect_same_frames(take, whole);
+  EXPECT_FALSE(std::filesystem::exists(take + ".part"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Animate, Interrupted, ::testing::Values("", "--dynamic"),

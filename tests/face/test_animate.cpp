@@ -32,15 +32,18 @@ TEST(Animate, AnInterruptedRunResumesToTheIdenticalTake) {
     options.simulation.dynamic = dynamic;
     const Take whole = animate(model(), performance, options);
     ASSERT_EQ(whole.frames.size(), length);
-    // Before the second key frame, just before it, and after it.
-    for (const std::size_t stop : {std::size_t{5}, std::size_t{key_interval}, std::size_t{key_interval + 3}}) {
+    // Before the second key frame, just before it, after it, and with nothing left to do.
+    for (const std::size_t stop : {std::size_t{5}, std::size_t{key_interval}, std::size_t{key_interval + 3}, length}) {
       std::vector<TakeFrame> frames;
       animate(model(), performance, options, {}, [&](const TakeFrame& frame, int) {
         frames.push_back(frame);
         return frames.size() < stop;
       });
       ASSERT_EQ(frames.size(), stop);
-      animate(model(), performance, options, std::vector<TakeFrame>(frames), [&](const TakeFrame& frame, int number) {
+      std::vector<TakeFrame> finished(stop);  // nothing but what it takes to go on
+      const int key = last_key_frame(static_cast<int>(stop));
+      if (key > 0) finished[static_cast<std::size_t>(key) - 1] = frames[static_cast<std::size_t>(key) - 1];
+      animate(model(), performance, options, finished, [&](const TakeFrame& frame, int number) {
         EXPECT_EQ(number, static_cast<int>(frames.size()));
         frames.push_back(frame);
         return true;

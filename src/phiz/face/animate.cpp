@@ -106,12 +106,13 @@ void animate(const FaceModel& model, const Performance& performance, const Anima
              const std::vector<TakeFrame>& finished, const FrameCallback& on_frame) {
   validate(performance, "performance");
   const int end = end_of(performance, options);
+  const int done = static_cast<int>(finished.size());
+  if (done > end - options.first_frame) reject("take", "has more frames than were asked for");
+  if (done == end - options.first_frame) return;
   const ExpressionMatch match = match_expressions(model, performance);
   Simulation simulation(model, options.simulation);
   const bool dynamic = options.simulation.dynamic;
-  const int done = static_cast<int>(finished.size());
   int next = options.first_frame + last_key_frame(done);
-  if (done > end - options.first_frame) reject("take", "has more frames than were asked for");
   if (next > options.first_frame) {
     const TakeFrame& before = finished[static_cast<std::size_t>(next - options.first_frame - 1)];
     if (before.volume.rows() == 0)
