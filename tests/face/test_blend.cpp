@@ -86,7 +86,8 @@ TEST(Blend, StoredGradientsComeBack) {
 TEST(Blend, AllTetsAtOnceAgreeWithOneByOne) {
   const FaceModel model = build_volumetric_blendshapes(testing::small_head());
   const VectorXi soft = soft_tets(model.head);
-  ElementBlocks<float> elements(model.head.volume.V, model.head.volume.T(soft, Eigen::all), VectorXd::Ones(soft.size()), {});
+  ElementBlocks<float> elements(model.head.volume.V, model.head.volume.T(soft, Eigen::all), VectorXd::Ones(soft.size()),
+                                {});
   std::vector<std::ptrdiff_t> slot(static_cast<std::size_t>(soft.size()));
   for (std::size_t t = 0; t < slot.size(); ++t) slot[t] = static_cast<std::ptrdiff_t>(t);
   const TargetBlender blender(model, soft, slot);

@@ -18,7 +18,8 @@ HeadContacts::HeadContacts(const HeadTemplate& head, const ContactOptions& optio
   };
   const auto patch = [&](const ContactRegion& r) {
     const auto found = patches.find(r.name);
-    return found != patches.end() ? found->second : patches[r.name] = scene.add_patch(head.volume.V, r.triangles, r.extended);
+    return found != patches.end() ? found->second
+                                  : patches[r.name] = scene.add_patch(head.volume.V, r.triangles, r.extended);
   };
   for (const ContactPair& pair : head.contact_pairs) {
     const ContactRegion* moving = region(pair.vertices);
