@@ -5,26 +5,10 @@
 
 namespace phiz {
 
-namespace {
-
-/// Flags of the drawn skin's vertices on the lips.
-std::vector<char> lips(const HeadTemplate& head) {
-  std::vector<char> flags(static_cast<std::size_t>(head.skin.V.rows()), 0);
-  for (const std::string region : {"upperLip", "lowerLip", "upperLipInner", "lowerLipInner"}) {
-    const auto found = head.skin_regions.find(region);
-    if (found == head.skin_regions.end()) continue;
-    for (const int v : found->second) flags[static_cast<std::size_t>(v)] = 1;
-  }
-  return flags;
-}
-
-}  // namespace
-
 DrawnSkin::DrawnSkin(const HeadTemplate& head)
     : rest_(head.skin.V),
       simulated_(head.skin_vertices),
-      simulated_rest_(head.volume.V(head.skin_vertices, Eigen::all)),
-      folds_(head.skin, lips(head), -0.5) {
+      simulated_rest_(head.volume.V(head.skin_vertices, Eigen::all)) {
   start_.push_back(0);
   for (Eigen::Index v = 0; v < rest_.rows(); ++v) {
     for (SparseMatrixd::InnerIterator it(head.skin_interpolation, v); it; ++it) {
@@ -50,7 +34,6 @@ MatrixX3d DrawnSkin::at(const MatrixX3d& volume) const {
         drawn.row(v) = rest_.row(v) + sum.head<3>().transpose().cast<double>();
       },
       1024);
-  folds_.mend(drawn);
   return drawn;
 }
 

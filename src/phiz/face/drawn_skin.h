@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "phiz/anatomy/head_template.h"
-#include "phiz/geometry/folds.h"
 
 namespace phiz {
 
@@ -14,8 +13,7 @@ class DrawnSkin {
  public:
   explicit DrawnSkin(const HeadTemplate& head);
 
-  /// Positions of the drawn skin for positions of the volume (both in the head frame, metres). Where the lips would
-  /// fold over themselves (a triangle or two in the corners of the mouth) they are evened out.
+  /// Positions of the drawn skin for positions of the volume (both in the head frame, metres).
   MatrixX3d at(const MatrixX3d& volume) const;
 
  private:
@@ -25,7 +23,6 @@ class DrawnSkin {
   std::vector<int> start_;    ///< of each drawn vertex in `source_` and `weight_`
   std::vector<int> source_;   ///< places in `simulated_`
   std::vector<float> weight_;
-  FoldMender folds_;
 };
 
 }  // namespace phiz

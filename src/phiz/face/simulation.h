@@ -56,8 +56,7 @@ class Simulation {
 
   /// Vertices of the volume in the head frame, metres.
   const MatrixX3d& positions() const;
-  /// The drawn skin in the head frame. Where the lips would fold over themselves (a triangle or two in the corners of
-  /// the mouth) they are evened out.
+  /// The drawn skin in the head frame, metres.
   MatrixX3d skin() const;
   JawPose jaw() const;
   /// External force per vertex of the volume, newtons, head frame; an empty matrix for none.
