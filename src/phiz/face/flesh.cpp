@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "phiz/face/flesh.h"
 
+#include <algorithm>
+
+#include "phiz/geometry/tetrahedralise.h"
+
 namespace phiz {
 
 namespace {
+
+// Flat tets resist by their small height, not by their flesh.
+constexpr double flat_ratio = 0.1;    ///< radius ratio below which a tet is softened
+constexpr double least_share = 0.02;  ///< of the stiffness
 
 bool moves_with(const HeadTemplate& head, Eigen::Index vertex, Carrier carrier) {
   return head.carrier[vertex] == static_cast<int>(carrier);
@@ -18,7 +26,12 @@ ElasticBody flesh_body(const HeadTemplate& head, const VectorXi& soft, const Ter
   body.fixed.resize(static_cast<std::size_t>(body.rest.rows()));
   for (Eigen::Index v = 0; v < body.rest.rows(); ++v)
     body.fixed[static_cast<std::size_t>(v)] = !moves_with(head, v, Carrier::flesh);
-  body.stiffness = VectorXd::Constant(soft.size(), stiffness);
+  body.stiffness.resize(soft.size());
+  for (Eigen::Index t = 0; t < soft.size(); ++t) {
+    const auto corner = [&](int k) { return Vector3d(body.rest.row(body.tets(t, k))); };
+    const double ratio = radius_ratio(corner(0), corner(1), corner(2), corner(3));
+    body.stiffness[t] = stiffness * std::clamp(ratio / flat_ratio, least_share, 1.0);
+  }
   body.weights = weights;
   return body;
 }
