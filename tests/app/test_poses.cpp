@@ -23,6 +23,18 @@ Eigen::Index column_of(const std::string& name) {
   return std::find(expression_names.begin(), expression_names.end(), name) - expression_names.begin();
 }
 
+/// Frames at 30 Hz of weights, one column per expression.
+Performance still_headed(const MatrixXd& weights) {
+  Performance performance;
+  performance.expressions.assign(expression_names.begin(), expression_names.end());
+  performance.weights = weights;
+  const Eigen::Index n = weights.rows();
+  performance.time = VectorXd::LinSpaced(n, 0, static_cast<double>(n - 1) / 30);
+  performance.frame_rate = 30;
+  performance.head = performance.left_eye = performance.right_eye = MatrixX3d::Zero(n, 3);
+  return performance;
+}
+
 /// Poses of two to seven expressions of the lower face, each reached and held in ten frames.
 Performance random_mouths(int poses, std::uint64_t seed) {
   std::vector<Eigen::Index> pool;
@@ -31,9 +43,7 @@ Performance random_mouths(int poses, std::uint64_t seed) {
       if (std::string(expression_names[e]).starts_with(part)) pool.push_back(static_cast<Eigen::Index>(e));
   constexpr int frames = 10;
   const auto count = static_cast<Eigen::Index>(expression_names.size());
-  Performance performance;
-  performance.expressions.assign(expression_names.begin(), expression_names.end());
-  performance.weights.setZero(poses * frames, count);
+  MatrixXd weights = MatrixXd::Zero(poses * frames, count);
   Random random(seed);
   VectorXd from = VectorXd::Zero(count);
   for (int pose = 0; pose < poses; ++pose) {
@@ -44,15 +54,11 @@ Performance random_mouths(int poses, std::uint64_t seed) {
     close = std::min(close, to[column_of("jawOpen")]);
     for (int f = 0; f < frames; ++f) {
       const double t = std::min(1.0, (f + 1) / 8.0);
-      performance.weights.row(pose * frames + f) = (from + t * t * (3 - 2 * t) * (to - from)).transpose();
+      weights.row(pose * frames + f) = (from + t * t * (3 - 2 * t) * (to - from)).transpose();
     }
     from = to;
   }
-  const Eigen::Index n = performance.weights.rows();
-  performance.time = VectorXd::LinSpaced(n, 0, static_cast<double>(n - 1) / 30);
-  performance.frame_rate = 30;
-  performance.head = performance.left_eye = performance.right_eye = MatrixX3d::Zero(n, 3);
-  return performance;
+  return still_headed(weights);
 }
 
 /// How deep the vertices lie within flesh that is not their own, at the most: inside of a tet that they are no corner
@@ -128,6 +134,35 @@ TEST(RandomPoses, ConvergeAndNoLipEntersFleshOrTeeth) {
       {"animate", PHIZ_PREVIEW_MODEL, scratch / "poses.phiz", "-o", scratch / "without.phiz", "--no-contact"});
   ASSERT_EQ(without.code, 0) << without.err;
   EXPECT_GT(deepest(scratch / "without.phiz"), 1e-3) << "the poses press lips together, or this test says nothing";
+}
+
+/// How far the lips stand apart in the middle two thirds of the mouth, at the most, metres.
+double parting(const HeadTemplate& head, const MatrixX3d& skin) {
+  const VectorXi &above = head.skin_regions.at("loop:upperLipLine"), &below = head.skin_regions.at("loop:lowerLipLine");
+  const double half = 0.67 * head.skin.V(above, 0).cwiseAbs().maxCoeff();
+  double most = 0;
+  for (const int a : above) {
+    if (std::abs(head.skin.V(a, 0)) > half) continue;
+    Eigen::Index partner = 0;
+    (head.skin.V(below, Eigen::all).rowwise() - head.skin.V.row(a)).rowwise().squaredNorm().minCoeff(&partner);
+    most = std::max(most, (skin.row(a) - skin.row(below[partner])).norm());
+  }
+  return most;
+}
+
+TEST(MouthClose, BringsTheLipsOfAnOpenJawTogether) {
+  const ScratchFolder scratch;
+  MatrixXd weights = MatrixXd::Zero(6, static_cast<Eigen::Index>(expression_names.size()));
+  weights.col(column_of("jawOpen")) << 0.1, 0.25, 0.5, 0.75, 1, 0.5;
+  weights.col(column_of("mouthClose")) << 0.1, 0.25, 0.5, 0.75, 1, 0;
+  save(scratch / "close.phiz", still_headed(weights));
+  const Outcome outcome =
+      phiz_command({"animate", PHIZ_PREVIEW_MODEL, scratch / "close.phiz", "-o", scratch / "take.phiz"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const HeadTemplate head = load_head_template(PHIZ_PREVIEW_HEAD);
+  const TakeReader take(scratch / "take.phiz");
+  for (int f = 0; f < 5; ++f) EXPECT_LE(parting(head, take.frame(f).skin.cast<double>()), 0.002) << "frame " << f;
+  EXPECT_GE(parting(head, take.frame(5).skin.cast<double>()), 0.01) << "the jaw alone parts them";
 }
 
 }  // namespace

@@ -23,6 +23,13 @@ namespace {
 
 constexpr double stiffness = 3000;  ///< pascals; only ratios count here
 
+/// Stretches that a target may ask for.
+struct StretchBounds {
+  double least, most;
+};
+constexpr StretchBounds pulled_skin{0.4, 4};     ///< by muscles
+constexpr StretchBounds pulled_by_jaw{0.15, 8};  ///< lips that stay closed over an open jaw are drawn out to fivefold
+
 /// The soft tet (index into `soft`) below each triangle of the simulation skin, or -1.
 VectorXi tets_below(const HeadTemplate& head, const VectorXi& soft) {
   std::map<std::array<int, 3>, int> below;
@@ -47,13 +54,13 @@ VectorXi tets_below(const HeadTemplate& head, const VectorXi& soft) {
 /// A sculpted skin may fold over itself and invert tets below, mostly tiny ones at the corners of lids and lips. A
 /// target must not ask for that: gradients outside of the bounds are replaced by the mean of their sound neighbours,
 /// layer by layer, and what is left is brought within the bounds.
-void repair_gradients(std::vector<Matrix3d>& F, const VectorXd& volume, const MatrixX4i& neighbours) {
-  constexpr double least = 0.4, most = 4;
+void repair_gradients(std::vector<Matrix3d>& F, const VectorXd& volume, const MatrixX4i& neighbours,
+                      const StretchBounds& bounds) {
   constexpr int layers = 4;
   std::vector<char> sound(F.size());
   for (std::size_t t = 0; t < F.size(); ++t) {
     const Vector3d s = svd3(F[t]).s;
-    sound[t] = s[2] >= least && s[0] <= most;
+    sound[t] = s[2] >= bounds.least && s[0] <= bounds.most;
   }
   for (int layer = 0; layer < layers; ++layer) {
     std::vector<std::pair<std::size_t, Matrix3d>> mended;
@@ -76,8 +83,8 @@ void repair_gradients(std::vector<Matrix3d>& F, const VectorXd& volume, const Ma
   }
   for (Matrix3d& gradient : F) {
     const Svd3 svd = svd3(gradient);
-    if (svd.s[2] < least || svd.s[0] > most)
-      gradient = svd.U * svd.s.cwiseMax(least).cwiseMin(most).asDiagonal() * svd.V.transpose();
+    if (svd.s[2] < bounds.least || svd.s[0] > bounds.most)
+      gradient = svd.U * svd.s.cwiseMax(bounds.least).cwiseMin(bounds.most).asDiagonal() * svd.V.transpose();
   }
 }
 
@@ -126,7 +133,7 @@ class ShapeSolver {
     solve.step_tolerance = options_.step_tolerance;
     statistics = hold_.solve(x, solve);
     std::vector<Matrix3d> F = deformation_gradients(x, head_.volume.T(soft_, Eigen::all), rest_);
-    repair_gradients(F, rest_.volume, neighbours_);
+    repair_gradients(F, rest_.volume, neighbours_, jaw.isZero() ? pulled_skin : pulled_by_jaw);
     VolumetricShape shape = shape_of_gradients(expression.name, jaw, soft_, F, options_.least_strain);
     shape.displacement = (x - head_.volume.V).cast<float>();
     return shape;
