@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
-#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -45,10 +44,6 @@ TEST(Animate, EveryExpressionAloneConvergesWithoutPenetrationOrLossOfVolume) {
   performance.expressions.assign(expression_names.begin(), expression_names.end());
   const auto count = static_cast<Eigen::Index>(expression_names.size());
   performance.weights = MatrixXd::Identity(count, count);
-  const auto column = [](const char* name) {
-    return std::find(expression_names.begin(), expression_names.end(), name) - expression_names.begin();
-  };
-  performance.weights(column("mouthClose"), column("jawOpen")) = 1;  // it closes the lips of an open jaw
   performance.time = VectorXd::LinSpaced(count, 0, static_cast<double>(count - 1) / 30);
   performance.frame_rate = 30;
   performance.head = performance.left_eye = performance.right_eye = MatrixX3d::Zero(count, 3);

@@ -83,7 +83,7 @@ inline HeadTemplate small_head() {
   open.jaw[0] = 0.3;
   const Eigen::Isometry3d jaw = jaw_transform(head.jaw, open.jaw);
   Expression pout{"mouthPucker", MatrixX3d::Zero(n, 3), JawPose::Zero()};
-  Expression press{"mouthClose", MatrixX3d::Zero(n, 3), JawPose::Zero()};
+  Expression press{"mouthPressLeft", MatrixX3d::Zero(n, 3), JawPose::Zero()};
   for (Eigen::Index i = 0; i < n; ++i) {
     const Vector3d p = head.skin.V.row(i);
     if (used[static_cast<std::size_t>(i)] < split) open.displacement.row(i) = jaw * p - p;
@@ -99,7 +99,7 @@ inline HeadTemplate small_head() {
 /// The three expressions in motion.
 inline Performance small_performance(int frames) {
   Performance performance;
-  performance.expressions = {"JawOpen", "MouthPucker", "MouthClose", "browInnerUp"};
+  performance.expressions = {"JawOpen", "MouthPucker", "MouthPressLeft", "browInnerUp"};
   performance.frame_rate = 30;
   performance.time = VectorXd::LinSpaced(frames, 0, (frames - 1) / 30.0);
   performance.weights.resize(frames, 4);

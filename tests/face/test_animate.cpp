@@ -74,6 +74,18 @@ TEST(Animate, ColumnsAreMatchedByNameAndTheRestIsReported) {
   EXPECT_TRUE(match.undriven.empty());
 }
 
+TEST(Animate, LipsAreClosedNoFartherThanTheJawIsOpen) {
+  Performance performance = testing::small_performance(2);
+  performance.expressions = {"mouthClose", "jawOpen", "a", "b"};
+  performance.weights.row(0) << 0.9, 0.5, 0, 0;
+  performance.weights.row(1) << 0.4, 0.5, 0, 0;
+  const ExpressionMatch match{{0, 1}, {}, {}};
+  EXPECT_DOUBLE_EQ(shape_weights(match, performance, 0)[0], 0.65);
+  EXPECT_DOUBLE_EQ(shape_weights(match, performance, 1)[0], 0.4);
+  performance.expressions[1] = "c";
+  EXPECT_DOUBLE_EQ(shape_weights(match, performance, 0)[0], 0.15);
+}
+
 TEST(Animate, EyeLookWeightsTurnTheEyesWhenNoAnglesWereRecorded) {
   Performance performance = testing::small_performance(2);
   performance.expressions = {"eyeLookOutLeft", "eyeLookInRight", "eyeLookUpLeft", "eyeLookUpRight"};

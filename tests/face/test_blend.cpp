@@ -106,8 +106,8 @@ TEST(Blend, AllTetsAtOnceAgreeWithOneByOne) {
         }
     }
     const Matrix3d expected = polar_blend(logs, stretches, weights);
-    for (int k = 0; k < 9; ++k)
-      EXPECT_NEAR(elements.target[ElementBlocks<float>::at(t, 9, k)], expected.data()[k], 5e-6);
+    for (int k = 0; k < 9; ++k)  // shapes are stored in 16 bits
+      EXPECT_NEAR(elements.target[ElementBlocks<float>::at(t, 9, k)], expected.data()[k], 1e-5);
   }
 }
 

@@ -26,6 +26,11 @@ int column_of(const Performance& performance, const std::string& name) {
   return -1;
 }
 
+double weight_of(const Performance& performance, Eigen::Index frame, const std::string& name) {
+  const int column = column_of(performance, name);
+  return column >= 0 ? performance.weights(frame, column) : 0.0;
+}
+
 int end_of(const Performance& performance, const AnimateOptions& options) {
   const int frames = static_cast<int>(performance.time.size());
   const int end = options.end_frame < 0 ? frames : options.end_frame;
@@ -61,10 +66,14 @@ ExpressionMatch match_expressions(const FaceModel& model, const Performance& per
 }
 
 VectorXd shape_weights(const ExpressionMatch& match, const Performance& performance, Eigen::Index frame) {
+  constexpr double pressing = 0.15;  // of lips that meet already
+  const int close = column_of(performance, "mouthClose");
+  const double most = weight_of(performance, frame, "jawOpen") + pressing;
   VectorXd weights(static_cast<Eigen::Index>(match.column.size()));
   for (Eigen::Index m = 0; m < weights.size(); ++m) {
     const int column = match.column[static_cast<std::size_t>(m)];
     weights[m] = column >= 0 ? performance.weights(frame, column) : 0.0;
+    if (column >= 0 && column == close) weights[m] = std::min(weights[m], most);
   }
   return weights;
 }
@@ -74,14 +83,11 @@ std::pair<Matrix3d, Matrix3d> eye_rotations(const Performance& performance, Eige
     return {rotation_from_angles(performance.left_eye.row(frame)),
             rotation_from_angles(performance.right_eye.row(frame))};
   // A full eyeLook weight is taken for the usual range of the eye: 35 degrees aside, 30 up, 35 down.
-  const auto weight = [&](const char* name) {
-    const int column = column_of(performance, name);
-    return column >= 0 ? performance.weights(frame, column) : 0.0;
-  };
   constexpr double degree = 3.14159265358979323846 / 180;
   const auto eye = [&](const char* toward_left, const char* toward_right, const char* down, const char* up) {
-    const double yaw = 35 * degree * (weight(toward_left) - weight(toward_right));
-    const double pitch = degree * (35 * weight(down) - 30 * weight(up));
+    const double yaw =
+        35 * degree * (weight_of(performance, frame, toward_left) - weight_of(performance, frame, toward_right));
+    const double pitch = degree * (35 * weight_of(performance, frame, down) - 30 * weight_of(performance, frame, up));
     return rotation_from_angles({yaw, pitch, 0});
   };
   return {eye("eyeLookOutLeft", "eyeLookInLeft", "eyeLookDownLeft", "eyeLookUpLeft"),
