@@ -27,8 +27,8 @@ constexpr double stiffness = 3000;  ///< pascals; only ratios count here
 struct StretchBounds {
   double least, most;
 };
-constexpr StretchBounds pulled_skin{0.4, 4};     ///< by muscles
-constexpr StretchBounds pulled_by_jaw{0.15, 8};  ///< lips that stay closed over an open jaw are drawn out to fivefold
+constexpr StretchBounds usual{0.4, 4};
+constexpr StretchBounds drawn_out{0.15, 8};  ///< lips that stay closed over an open jaw grow to fivefold
 
 /// The soft tet (index into `soft`) below each triangle of the simulation skin, or -1.
 VectorXi tets_below(const HeadTemplate& head, const VectorXi& soft) {
@@ -101,7 +101,7 @@ class ShapeSolver {
         transfer_(transfer_body()),
         hold_(hold_body()) {}
 
-  VolumetricShape solve(const Expression& expression, SolveStatistics& statistics) {
+  VolumetricShape solve(const Expression& expression, const StretchBounds& bounds, SolveStatistics& statistics) {
     const MatrixX3d moved = head_.skin_sampling * expression.displacement;
     MatrixX3d sculpted = head_.volume.V;
     for (Eigen::Index i = 0; i < head_.skin_vertices.size(); ++i) sculpted.row(head_.skin_vertices[i]) += moved.row(i);
@@ -133,7 +133,7 @@ class ShapeSolver {
     solve.step_tolerance = options_.step_tolerance;
     statistics = hold_.solve(x, solve);
     std::vector<Matrix3d> F = deformation_gradients(x, head_.volume.T(soft_, Eigen::all), rest_);
-    repair_gradients(F, rest_.volume, neighbours_, jaw.isZero() ? pulled_skin : pulled_by_jaw);
+    repair_gradients(F, rest_.volume, neighbours_, bounds);
     VolumetricShape shape = shape_of_gradients(expression.name, jaw, soft_, F, options_.least_strain);
     shape.displacement = (x - head_.volume.V).cast<float>();
     return shape;
@@ -245,9 +245,10 @@ FaceModel build_volumetric_blendshapes(HeadTemplate head, const BlendshapeOption
         // Lips that meet over an open jaw: with the jaw closed the shape would turn them inside out.
         Expression both{expression.name, open->displacement + expression.displacement, open->jaw + expression.jaw};
         SolveStatistics again;
-        model.shapes.push_back(difference(solver.solve(both, statistics), solver.solve(*open, again)));
+        model.shapes.push_back(
+            difference(solver.solve(both, drawn_out, statistics), solver.solve(*open, usual, again)));
       } else {
-        model.shapes.push_back(solver.solve(expression, statistics));
+        model.shapes.push_back(solver.solve(expression, usual, statistics));
       }
       if (options.report) options.report(expression.name, statistics);
     }
