@@ -55,9 +55,32 @@ struct SkullLandmark {
 struct Muscle {
   std::string name;
   std::vector<MatrixX3d> fibres;
-  VectorXi tets;        ///< rows of volume.T that contain some of it
-  VectorXd fraction;    ///< share of the tet's volume, in (0, 1]
-  MatrixX3d direction;  ///< unit fibre direction per entry of `tets`
+  VectorXi tets;         ///< rows of volume.T that contain some of it
+  VectorXd fraction;     ///< share of the tet's volume, in (0, 1]
+  MatrixX3d direction;   ///< unit fibre direction per entry of `tets`
+  TriangleMesh surface;  ///< closed and outward: what it looks like and fills; empty in files before version 3
+  bool ring = false;     ///< its fibres go round an opening: orbicularis oculi and oris
+};
+
+/// How flesh sits on bone at a vertex.
+enum class Hold : int {
+  pin = 1,    ///< grown to the bone: it moves with it
+  slide = 2,  ///< it stays on the bone's tangent plane and may slip along
+};
+
+/// Where flesh sits on bone (phace.md 4.3), one row each. The carrier of a vertex says which bone.
+struct Attachments {
+  VectorXi vertices;  ///< rows of volume.V on the surface of a bone, ascending
+  VectorXi hold;      ///< Hold
+  MatrixX3d normals;  ///< unit, out of the bone
+};
+
+/// A statistical model of people: skin = HeadTemplate::skin.V + sum over k of c_k mode_k, the c_k independent and
+/// standard normal. Empty where nothing is known.
+struct IdentityModel {
+  Eigen::MatrixXf skin;                          ///< 3 n_skin x k: x, y, z of vertex 0, of vertex 1, ...; metres
+  std::map<std::string, Eigen::MatrixXf> parts;  ///< the same for parts that have their own data (teeth, eyes)
+  VectorXd deviation;  ///< k: root mean square displacement of the skin by one unit of the mode, metres
 };
 
 /// A patch of the simulation skin that takes part in contact.
@@ -98,6 +121,8 @@ struct HeadTemplate {
   std::vector<Landmark> landmarks;
   std::vector<SkullLandmark> skull_landmarks;
   std::vector<Muscle> muscles;
+  Attachments attachments;
+  IdentityModel identity;
   std::vector<ContactRegion> contact_regions;
   std::vector<ContactPair> contact_pairs;
   Vector3d left_eye_centre = Vector3d::Zero();
