@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Regular grids of cells: solids from untidy meshes, morphology, distances.
+#pragma once
+
+#include <vector>
+
+#include "phiz/geometry/mesh.h"
+#include "phiz/geometry/remesh.h"
+
+namespace phiz {
+
+/// A lattice of cubes. Cell (i, j, k) has its centre at origin + cell * (i, j, k); its row in a list of cells is
+/// i + size.x * (j + size.y * k).
+struct VoxelGrid {
+  Vector3d origin = Vector3d::Zero();
+  double cell = 1;  ///< edge of a cube, metres
+  Eigen::Vector3i size = Eigen::Vector3i::Zero();
+
+  std::size_t count() const { return static_cast<std::size_t>(size.x()) * size.y() * size.z(); }
+  std::size_t row(int i, int j, int k) const {
+    return static_cast<std::size_t>(i) +
+           static_cast<std::size_t>(size.x()) * (static_cast<std::size_t>(j) + static_cast<std::size_t>(size.y()) * k);
+  }
+  Vector3d centre(int i, int j, int k) const { return origin + cell * Vector3d(i, j, k); }
+};
+
+/// Unit vectors spread evenly over the sphere (golden spiral).
+std::vector<Vector3d> sphere_directions(int count);
+
+/// The grid whose cells cover `box` and `margin` around it. Throws phiz::Error(bad_input) for more than 3e8 cells.
+VoxelGrid grid_round(const Box& box, double cell, double margin);
+
+/// Marks the cells whose centres lie inside of `mesh` (crossing number of rays along x above zero; pieces may overlap),
+/// on top of what `solid` (count() flags) holds.
+void fill_inside(const VoxelGrid& grid, const TriangleMesh& mesh, std::vector<char>& solid);
+
+/// Distance from every cell to the nearest marked one, metres (Felzenszwalb and Huttenlocher 2012); a large number
+/// everywhere when none is marked.
+std::vector<float> distance_to(const VoxelGrid& grid, const std::vector<char>& marked);
+
+/// Fills gaps narrower than twice `radius`, and whatever a ball of that radius cannot reach from outside.
+void close_gaps(const VoxelGrid& grid, double radius, std::vector<char>& solid);
+
+/// Fills the cells from which at least the share `hidden` of all directions end in the solid within the grid: caves and
+/// chambers, however many small doors they have. Tested on cells of `coarse` times the size.
+void fill_caves(const VoxelGrid& grid, double hidden, int coarse, std::vector<char>& solid);
+
+/// A value per cell, interpolated linearly between centres and held beyond the outer ones.
+class VoxelField {
+ public:
+  VoxelField(const VoxelGrid& grid, std::vector<float> values) : grid_(grid), values_(std::move(values)) {}
+  double operator()(const Vector3d& p) const;
+  const VoxelGrid& grid() const { return grid_; }
+
+ private:
+  VoxelGrid grid_;
+  std::vector<float> values_;
+};
+
+/// Distance to the surface of the solid, negative inside, smoothed over a cell, metres.
+VoxelField signed_distance_field(const VoxelGrid& grid, const std::vector<char>& solid);
+
+}  // namespace phiz
