@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "phiz/anatomy/builtin/bones/bones.h"
-#include "phiz/anatomy/builtin/contact_regions.h"
+#include "phiz/anatomy/contact_regions.h"
 #include "phiz/anatomy/builtin/expressions/shapes.h"
 #include "phiz/anatomy/builtin/flesh_thickness.h"
 #include "phiz/anatomy/builtin/mouth/teeth.h"

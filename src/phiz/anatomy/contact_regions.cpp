@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "phiz/anatomy/builtin/contact_regions.h"
+#include "phiz/anatomy/contact_regions.h"
 
 #include <algorithm>
 #include <string>
