@@ -46,7 +46,16 @@ inline HeadTemplate sample_head() {
   muscle.tets = VectorXi::Zero(1);
   muscle.fraction = VectorXd::Constant(1, 0.4);
   muscle.direction = Vector3d::UnitY().transpose();
+  muscle.surface = sample_tetrahedron();
+  muscle.ring = true;
   head.muscles = {muscle};
+  head.attachments.vertices = VectorXi::Constant(1, 3);
+  head.attachments.hold = VectorXi::Constant(1, static_cast<int>(Hold::slide));
+  head.attachments.normals = Vector3d::UnitZ().transpose();
+  head.identity.skin = Eigen::MatrixXf::Constant(12, 2, 0.001F);
+  head.identity.skin(5, 1) = -0.002F;
+  head.identity.parts["tongue"] = Eigen::MatrixXf::Constant(12, 2, 0.003F);
+  head.identity.deviation = VectorXd::LinSpaced(2, 0.002, 0.001);
   head.contact_regions.push_back({"lips", VectorXi::Zero(1), skin.F.topRows(2), true});
   head.contact_pairs = {{"lips", "skull"}};
   head.left_eye_centre = Vector3d(0.03, 0.02, 0.05);

@@ -12,6 +12,7 @@
 #include "io/sample_nouns.h"
 #include "io/temporary_folder.h"
 #include "io/version1.h"
+#include "io/version2.h"
 #include "phiz/core/random.h"
 #include "phiz/io/container.h"
 #include "phiz/io/file_bytes.h"
@@ -66,6 +67,14 @@ void expect_same(const HeadTemplate& a, const HeadTemplate& b) {
   EXPECT_EQ(a.muscles[0].fibres, b.muscles[0].fibres);
   EXPECT_EQ(a.muscles[0].fraction, b.muscles[0].fraction);
   EXPECT_EQ(a.muscles[0].direction, b.muscles[0].direction);
+  EXPECT_EQ(a.muscles[0].ring, b.muscles[0].ring);
+  expect_same(a.muscles[0].surface, b.muscles[0].surface);
+  EXPECT_EQ(a.attachments.vertices, b.attachments.vertices);
+  EXPECT_EQ(a.attachments.hold, b.attachments.hold);
+  EXPECT_EQ(a.attachments.normals, b.attachments.normals);
+  EXPECT_EQ(a.identity.skin, b.identity.skin);
+  EXPECT_EQ(a.identity.parts, b.identity.parts);
+  EXPECT_EQ(a.identity.deviation, b.identity.deviation);
   ASSERT_EQ(a.contact_regions.size(), b.contact_regions.size());
   EXPECT_EQ(a.contact_regions[0].triangles, b.contact_regions[0].triangles);
   EXPECT_EQ(a.contact_regions[0].extended, b.contact_regions[0].extended);
@@ -304,12 +313,87 @@ TEST(Container, version_1_still_loads) {
   expect_same(take, load_take(folder.file("a.phiz")));
 }
 
+TEST(Container, a_head_of_version_2_has_no_surfaces_attachments_or_people) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.phiz");
+  save(path, sample_head());
+  version2::strip_head(path);
+  const HeadTemplate head = load_head_template(path);
+  ASSERT_EQ(head.muscles.size(), 1U);
+  EXPECT_EQ(head.muscles[0].fraction[0], 0.4);
+  EXPECT_EQ(head.muscles[0].surface.V.rows(), 0);
+  EXPECT_FALSE(head.muscles[0].ring);
+  EXPECT_EQ(head.attachments.vertices.size(), 0);
+  EXPECT_EQ(head.identity.skin.size(), 0);
+  EXPECT_EQ(head.contact_regions.size(), 1U);
+}
+
+TEST(Container, a_large_model_of_people_reads_back_the_same) {
+  const TemporaryFolder folder;
+  HeadTemplate head = sample_head();
+  // Far more than one chunk of 65,536 rows.
+  const Eigen::Index copies = 30000;
+  head.identity.parts.clear();
+  Part& part = head.parts[1];
+  const TriangleMesh one = part.mesh;
+  part.mesh.V = one.V.replicate(copies, 1);
+  head.identity.parts["skull"] = Eigen::MatrixXf::Random(3 * part.mesh.V.rows(), 2) * 0.01F;
+  save(folder.file("a.phiz"), head);
+  EXPECT_EQ(load_head_template(folder.file("a.phiz")).identity.parts, head.identity.parts);
+}
+
 TEST(Container, a_take_that_cannot_be_saved_whole_leaves_nothing) {
   const TemporaryFolder folder;
   Take take = sample_take(3);
   take.frames[2].skin(0, 0) = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THROW(save(folder.file("a.phiz"), take), Error);
   for (const auto& entry : std::filesystem::directory_iterator(folder.path())) ADD_FAILURE() << entry.path();
+}
+
+/// Saves the sample head after `spoil` and expects that reading it back is refused with `words`.
+template <class Spoil>
+void expect_refused(const char* words, Spoil&& spoil) {
+  const TemporaryFolder folder;
+  HeadTemplate head = sample_head();
+  spoil(head);
+  save(folder.file("a.phiz"), head);
+  EXPECT_REJECTED(load_head_template(folder.file("a.phiz")), words);
+}
+
+TEST(Container, wrong_surfaces_of_muscles_are_refused) {
+  expect_refused("surface of muscle zygomaticus", [](HeadTemplate& h) {
+    h.muscles[0].surface.F.conservativeResize(3, 3);  // open
+  });
+  expect_refused("inside out",
+                 [](HeadTemplate& h) { h.muscles[0].surface.F.col(0).swap(h.muscles[0].surface.F.col(1)); });
+  expect_refused("metres", [](HeadTemplate& h) { h.muscles[0].surface.V *= 1000; });
+  expect_refused("muscles/0/surface", [](HeadTemplate& h) { h.muscles[0].surface.V(0, 0) = NAN; });
+}
+
+TEST(Container, wrong_attachments_are_refused) {
+  expect_refused("no bone carries", [](HeadTemplate& h) { h.attachments.vertices[0] = 0; });
+  expect_refused("refers to 4", [](HeadTemplate& h) { h.attachments.vertices[0] = 4; });
+  expect_refused("unknown hold 3", [](HeadTemplate& h) { h.attachments.hold[0] = 3; });
+  expect_refused("not unit", [](HeadTemplate& h) { h.attachments.normals *= 2; });
+  expect_refused("not unit", [](HeadTemplate& h) { h.attachments.normals(0, 0) = NAN; });
+  expect_refused("different lengths", [](HeadTemplate& h) { h.attachments.hold.resize(0); });
+  expect_refused("must ascend", [](HeadTemplate& h) {
+    h.attachments.vertices = h.attachments.vertices.replicate(2, 1).eval();
+    h.attachments.hold = h.attachments.hold.replicate(2, 1).eval();
+    h.attachments.normals = h.attachments.normals.replicate(2, 1).eval();
+  });
+}
+
+TEST(Container, a_wrong_model_of_people_is_refused) {
+  expect_refused("expected 12 x 2", [](HeadTemplate& h) { h.identity.skin.conservativeResize(9, 2); });
+  expect_refused("identity model of part tongue has 12 x 1",
+                 [](HeadTemplate& h) { h.identity.parts["tongue"].conservativeResize(12, 1); });
+  expect_refused("unknown part nose", [](HeadTemplate& h) { h.identity.parts["nose"] = h.identity.parts["tongue"]; });
+  expect_refused("1 deviations for 2 modes", [](HeadTemplate& h) { h.identity.deviation.conservativeResize(1); });
+  expect_refused("negative", [](HeadTemplate& h) { h.identity.deviation[1] = -1; });
+  expect_refused("not finite", [](HeadTemplate& h) { h.identity.skin(3, 0) = NAN; });
+  expect_refused("metres", [](HeadTemplate& h) { h.identity.skin *= 1000; });
+  expect_refused("no modes", [](HeadTemplate& h) { h.identity.skin.resize(12, 0), h.identity.deviation.resize(0); });
 }
 
 TEST(Container, what_lies_far_from_the_head_is_refused) {

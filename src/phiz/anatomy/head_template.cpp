@@ -2,260 +2,12 @@
 #include "phiz/anatomy/head_template.h"
 
 #include <algorithm>
-#include <cmath>
-#include <set>
 #include <string>
 #include <vector>
 
-#include "phiz/core/error.h"
-#include "phiz/geometry/topology.h"
-#include "phiz/geometry/validate.h"
+#include "phiz/geometry/operators.h"
 
 namespace phiz {
-namespace {
-
-constexpr double farthest = 1;             // metres from the origin, for anything that belongs to a head
-constexpr double largest_skin_gap = 0.01;  // metres between the drawn and the simulation skin
-
-/// Says what is wrong with one item of the head.
-class Check {
- public:
-  explicit Check(std::string where) : where_(std::move(where)) {}
-
-  [[noreturn]] void wrong(const std::string& what, const std::string& mend = {}) const { reject(where_, what, mend); }
-  void that(bool right, const std::string& what, const std::string& mend = {}) const {
-    if (!right) wrong(what, mend);
-  }
-
-  template <class Derived>
-  void finite(const Eigen::MatrixBase<Derived>& m, const std::string& name) const {
-    for (Eigen::Index i = 0; i < m.rows(); ++i)
-      for (Eigen::Index j = 0; j < m.cols(); ++j)
-        if (!std::isfinite(static_cast<double>(m(i, j)))) wrong(name + " row " + std::to_string(i) + " is not finite");
-  }
-
-  /// Points within reach of the head; so none is in another unit or not finite.
-  void nearby(const MatrixX3d& points, const std::string& name) const {
-    for (Eigen::Index i = 0; i < points.rows(); ++i)
-      if (!(points.row(i).norm() <= farthest))
-        wrong(name + " (row " + std::to_string(i) + ") is more than " + std::to_string(static_cast<int>(farthest)) +
-                  " m away from the head",
-              "positions must be in metres");
-  }
-
-  template <class Derived>
-  void rows_below(const Eigen::MatrixBase<Derived>& m, Eigen::Index limit, const std::string& name) const {
-    for (Eigen::Index i = 0; i < m.rows(); ++i)
-      for (Eigen::Index j = 0; j < m.cols(); ++j)
-        if (m(i, j) < 0 || m(i, j) >= limit)
-          wrong(name + " row " + std::to_string(i) + " refers to " + std::to_string(m(i, j)) + ", but there are " +
-                std::to_string(limit));
-  }
-
-  void weights(const SparseMatrixd& W, Eigen::Index rows, Eigen::Index columns, const std::string& name) const {
-    that(W.rows() == rows && W.cols() == columns, name + " is " + std::to_string(W.rows()) + " x " +
-                                                      std::to_string(W.cols()) + ", expected " + std::to_string(rows) +
-                                                      " x " + std::to_string(columns));
-    for (Eigen::Index i = 0; i < W.outerSize(); ++i) {
-      double sum = 0;
-      for (SparseMatrixd::InnerIterator it(W, i); it; ++it) sum += it.value();
-      that(std::abs(sum - 1) < 1e-6,
-           name + " row " + std::to_string(i) + " sums to " + std::to_string(sum) + ", not 1");
-    }
-  }
-
-  void fresh(std::set<std::string>& names, const std::string& name, const std::string& kind) const {
-    that(!name.empty(), "a " + kind + " has no name");
-    that(names.insert(name).second, "the " + kind + " " + name + " occurs twice");
-  }
-
-  const std::string& where() const { return where_; }
-
- private:
-  std::string where_;
-};
-
-void check_volume(const HeadTemplate& head, const Check& check) {
-  const Eigen::Index n = head.volume.V.rows();
-  check.that(n > 0 && head.volume.T.rows() > 0, "the head has no tets");
-  validate(head.volume, check.where() + ": volume");
-  const Vector3d size = (head.volume.V.colwise().maxCoeff() - head.volume.V.colwise().minCoeff()).transpose();
-  check.that(size.maxCoeff() > 0.05 && size.maxCoeff() < 1.0,
-             "the head is " + std::to_string(size.maxCoeff()) + " m large, which no head is",
-             "positions must be in metres");
-  check.that(head.carrier.size() == n,
-             "there are " + std::to_string(head.carrier.size()) + " carriers for " + std::to_string(n) + " vertices");
-  for (Eigen::Index v = 0; v < n; ++v)
-    check.that(head.carrier(v) >= 0 && head.carrier(v) <= static_cast<int>(Carrier::mandible),
-               "vertex " + std::to_string(v) + " has the carrier " + std::to_string(head.carrier(v)));
-  bool soft = false;
-  for (Eigen::Index t = 0; t < head.volume.T.rows(); ++t) {
-    const int region = head.volume.region(t);
-    check.that(region == Tissue::flesh || region == Tissue::skull || region == Tissue::mandible,
-               "tet " + std::to_string(t) + " has the unknown region " + std::to_string(region));
-    const int bone =
-        region == Tissue::mandible ? static_cast<int>(Carrier::mandible) : static_cast<int>(Carrier::skull);
-    for (int k = 0; k < 4; ++k) {
-      const int carrier = head.carrier(head.volume.T(t, k));
-      soft |= carrier == static_cast<int>(Carrier::flesh);
-      check.that(region == Tissue::flesh || carrier == bone, "tet " + std::to_string(t) + " is bone, but its vertex " +
-                                                                 std::to_string(head.volume.T(t, k)) +
-                                                                 " does not move with that bone");
-    }
-  }
-  check.that(soft, "no vertex is free to move");
-}
-
-void check_skin(const HeadTemplate& head, const Check& check) {
-  const Eigen::Index n = head.volume.V.rows(), s = head.skin_vertices.size();
-  check.that(s > 0 && head.skin_triangles.rows() > 0, "the simulation skin is empty");
-  check.rows_below(head.skin_vertices, n, "skin_vertices");
-  check.rows_below(head.skin_triangles, n, "skin_triangles");
-  std::vector<char> on_skin(n, 0);
-  for (Eigen::Index i = 0; i < s; ++i) {
-    check.that(!on_skin[head.skin_vertices(i)],
-               "skin_vertices lists vertex " + std::to_string(head.skin_vertices(i)) + " twice");
-    on_skin[head.skin_vertices(i)] = 1;
-  }
-  for (Eigen::Index f = 0; f < head.skin_triangles.rows(); ++f)
-    for (int k = 0; k < 3; ++k)
-      check.that(on_skin[head.skin_triangles(f, k)],
-                 "skin triangle " + std::to_string(f) + " has a corner that is not in skin_vertices");
-  check.that(is_edge_manifold(head.skin_triangles) && is_oriented(head.skin_triangles),
-             "the simulation skin is not manifold or not consistently oriented");
-  validate(head.skin, check.where() + ": skin");
-  check.that(head.skin.F.rows() > 0, "the drawn skin is empty");
-  check.that(is_edge_manifold(head.skin.F) && is_oriented(head.skin.F),
-             "the drawn skin is not manifold or not consistently oriented");
-  check.weights(head.skin_sampling, s, head.skin.V.rows(), "skin_sampling");
-  const MatrixX3d apart = head.skin_sampling * head.skin.V - head.volume.V(head.skin_vertices, Eigen::all);
-  check.that(apart.rowwise().norm().maxCoeff() < largest_skin_gap,
-             "the drawn skin and the simulation skin are up to " +
-                 std::to_string(1e3 * apart.rowwise().norm().maxCoeff()) + " mm apart",
-             "both must be in metres, and skin_sampling must fit them");
-  check.weights(head.skin_interpolation, head.skin.V.rows(), s, "skin_interpolation");
-  for (const auto& [name, vertices] : head.skin_regions)
-    check.rows_below(vertices, head.skin.V.rows(), "skin region " + name);
-}
-
-void check_parts(const HeadTemplate& head, const Check& check) {
-  std::set<std::string> names;
-  for (const Part& part : head.parts) {
-    check.fresh(names, part.name, "part");
-    validate(part.mesh, check.where() + ": part " + part.name);
-    check.nearby(part.mesh.V, "the part " + part.name);
-    check.that(part.carrier >= Carrier::flesh && part.carrier <= Carrier::right_eye,
-               "the part " + part.name + " has an unknown carrier");
-    for (const auto& [shape, displacement] : part.shapes) {
-      check.that(displacement.rows() == part.mesh.V.rows(),
-                 "the shape " + shape + " of part " + part.name + " has another number of vertices than the part");
-      check.finite(displacement, "shape " + shape + " of part " + part.name);
-    }
-  }
-}
-
-void check_jaw(const JawJoint& jaw, const Check& check) {
-  check.nearby(jaw.centre.transpose(), "the jaw's centre");
-  check.finite(jaw.lower, "the jaw's lower limits");
-  check.finite(jaw.upper, "the jaw's upper limits");
-  check.that(std::abs(jaw.axis.norm() - 1) < 1e-6 && std::abs(jaw.up.norm() - 1) < 1e-6 &&
-                 std::abs(jaw.axis.dot(jaw.up)) < 1e-6,
-             "the axes of the jaw are not unit vectors at a right angle");
-  check.that((jaw.lower.array() <= jaw.upper.array()).all(), "a lower limit of the jaw is above its upper limit");
-  check.that(jaw.lower.head<2>().cwiseAbs().maxCoeff() < 1.6 && jaw.upper.head<2>().cwiseAbs().maxCoeff() < 1.6,
-             "the jaw opens by more than a right angle", "angles must be in radians");
-}
-
-void check_expressions(const HeadTemplate& head, const Check& check) {
-  std::set<std::string> names;
-  for (const Expression& e : head.expressions) {
-    check.fresh(names, e.name, "expression");
-    check.that(e.displacement.rows() == head.skin.V.rows(),
-               "the expression " + e.name + " has " + std::to_string(e.displacement.rows()) +
-                   " displacements for a skin of " + std::to_string(head.skin.V.rows()) + " vertices");
-    check.finite(e.displacement, "expression " + e.name);
-    check.finite(e.jaw, "jaw pose of expression " + e.name);
-    check.that(e.jaw.cwiseAbs().maxCoeff() < 1.6,
-               "the expression " + e.name + " turns the jaw by more than a right angle",
-               "angles must be in radians, shifts in metres");
-    check.that(e.displacement.cwiseAbs().maxCoeff() < 0.2,
-               "the expression " + e.name + " moves the skin by more than 0.2 m", "displacements must be in metres");
-  }
-}
-
-void check_landmarks(const HeadTemplate& head, const Check& check) {
-  std::set<std::string> names;
-  for (const Landmark& mark : head.landmarks) {
-    check.fresh(names, mark.name, "landmark");
-    check.that(mark.skin_vertex >= 0 && mark.skin_vertex < head.skin.V.rows(),
-               "the landmark " + mark.name + " refers to skin vertex " + std::to_string(mark.skin_vertex));
-  }
-  names.clear();
-  for (const SkullLandmark& mark : head.skull_landmarks) {
-    check.fresh(names, mark.name, "skull landmark");
-    check.that(mark.bone_vertex >= 0 && mark.bone_vertex < head.volume.V.rows() &&
-                   head.carrier(mark.bone_vertex) != static_cast<int>(Carrier::flesh),
-               "the skull landmark " + mark.name + " does not refer to a vertex of a bone");
-    check.that(mark.skin_vertex >= 0 && mark.skin_vertex < head.skin.V.rows(),
-               "the skull landmark " + mark.name + " refers to skin vertex " + std::to_string(mark.skin_vertex));
-    check.that(std::abs(mark.normal.norm() - 1) < 1e-6, "the normal of skull landmark " + mark.name + " is not unit");
-    check.that(
-        mark.thickness_mean > 0 && mark.thickness_mean < 0.1 && mark.thickness_deviation > 0,
-        "the flesh at skull landmark " + mark.name + " is " + std::to_string(1e3 * mark.thickness_mean) + " mm thick",
-        "thickness must be in metres and positive");
-  }
-}
-
-void check_muscles(const HeadTemplate& head, const Check& check) {
-  std::set<std::string> names;
-  for (const Muscle& m : head.muscles) {
-    check.fresh(names, m.name, "muscle");
-    for (const MatrixX3d& fibre : m.fibres) {
-      check.that(fibre.rows() >= 2, "a fibre of " + m.name + " has less than two points");
-      check.finite(fibre, "a fibre of " + m.name);
-    }
-    check.that(m.fraction.size() == m.tets.size() && m.direction.rows() == m.tets.size(),
-               "the muscle " + m.name + " has lists of different lengths");
-    check.rows_below(m.tets, head.volume.T.rows(), "muscle " + m.name);
-    for (Eigen::Index i = 0; i < m.tets.size(); ++i) {
-      check.that(m.fraction(i) > 0 && m.fraction(i) <= 1 + 1e-9, "muscle " + m.name + " fills the share " +
-                                                                     std::to_string(m.fraction(i)) + " of tet " +
-                                                                     std::to_string(m.tets(i)));
-      check.that(std::abs(m.direction.row(i).norm() - 1) < 1e-6,
-                 "a fibre direction of muscle " + m.name + " is not a unit vector");
-    }
-  }
-}
-
-void check_contacts(const HeadTemplate& head, const Check& check) {
-  std::set<std::string> names;
-  for (const ContactRegion& region : head.contact_regions) {
-    check.fresh(names, region.name, "contact region");
-    check.rows_below(region.vertices, head.volume.V.rows(), "contact region " + region.name);
-    check.rows_below(region.triangles, head.volume.V.rows(), "contact region " + region.name);
-  }
-  for (const ContactPair& pair : head.contact_pairs) {
-    check.that(names.count(pair.vertices) > 0, "a contact pair names the unknown region '" + pair.vertices + "'");
-    check.that(names.count(pair.obstacle) > 0 || find_part(head, pair.obstacle) != nullptr,
-               "a contact pair names '" + pair.obstacle + "', which is neither a contact region nor a part");
-  }
-}
-
-}  // namespace
-
-void validate(const HeadTemplate& head, const std::string& where) {
-  const Check check(where);
-  check_volume(head, check);
-  check_skin(head, check);
-  check_parts(head, check);
-  check_jaw(head.jaw, check);
-  check_expressions(head, check);
-  check_landmarks(head, check);
-  check_muscles(head, check);
-  check_contacts(head, check);
-  check.nearby(head.left_eye_centre.transpose(), "the centre of the left eye");
-  check.nearby(head.right_eye_centre.transpose(), "the centre of the right eye");
-}
 
 VectorXi soft_tets(const HeadTemplate& head) {
   std::vector<int> rows;
@@ -265,6 +17,14 @@ VectorXi soft_tets(const HeadTemplate& head) {
     if (free && head.volume.region(t) == Tissue::flesh) rows.push_back(static_cast<int>(t));
   }
   return Eigen::Map<const VectorXi>(rows.data(), static_cast<Eigen::Index>(rows.size()));
+}
+
+double active_share(const HeadTemplate& head) {
+  const VectorXd volume = tet_volumes(head.volume.V, head.volume.T);
+  double active = 0, all = 0;
+  for (Eigen::Index t = 0; t < volume.size(); ++t) all += head.volume.region(t) == Tissue::flesh ? volume(t) : 0;
+  for (const Muscle& m : head.muscles) active += m.fraction.dot(volume(m.tets));
+  return all > 0 ? active / all : 0;
 }
 
 const Part* find_part(const HeadTemplate& head, const std::string& name) {

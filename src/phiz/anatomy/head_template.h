@@ -136,6 +136,8 @@ void validate(const HeadTemplate& head, const std::string& where);
 
 /// The soft tets: flesh tets with at least one vertex that is free to move. Rows of volume.T, ascending.
 VectorXi soft_tets(const HeadTemplate& head);
+/// The share of the volume of all flesh tets that muscles fill (the template of phace.md section 3: 0.27).
+double active_share(const HeadTemplate& head);
 
 /// The part of that name, or nullptr.
 const Part* find_part(const HeadTemplate& head, const std::string& name);

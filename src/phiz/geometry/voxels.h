@@ -1,63 +1,67 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Regular grids of cells: solids from untidy meshes, morphology, distances.
+/// The inside of a surface on a regular grid: for shapes too thin, too many or too messy to be meshed.
 #pragma once
 
+#include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "phiz/geometry/mesh.h"
-#include "phiz/geometry/remesh.h"
 
 namespace phiz {
 
-/// A lattice of cubes. Cell (i, j, k) has its centre at origin + cell * (i, j, k); its row in a list of cells is
-/// i + size.x * (j + size.y * k).
+/// Cubes of edge `spacing` (metres) side by side, x fastest.
 struct VoxelGrid {
-  Vector3d origin = Vector3d::Zero();
-  double cell = 1;  ///< edge of a cube, metres
+  Vector3d low = Vector3d::Zero();  ///< corner of the first voxel
+  double spacing = 0;
   Eigen::Vector3i size = Eigen::Vector3i::Zero();
 
-  std::size_t count() const { return static_cast<std::size_t>(size.x()) * size.y() * size.z(); }
-  std::size_t row(int i, int j, int k) const {
-    return static_cast<std::size_t>(i) +
-           static_cast<std::size_t>(size.x()) * (static_cast<std::size_t>(j) + static_cast<std::size_t>(size.y()) * k);
+  std::ptrdiff_t count() const { return std::ptrdiff_t{size.x()} * size.y() * size.z(); }
+  /// Distance of two voxels that are neighbours along an axis, in the numbering of voxels.
+  std::ptrdiff_t stride(int axis) const {
+    return axis == 0 ? 1 : axis == 1 ? size.x() : std::ptrdiff_t{size.x()} * size.y();
   }
-  Vector3d centre(int i, int j, int k) const { return origin + cell * Vector3d(i, j, k); }
+  /// Column, row and layer of a voxel.
+  Eigen::Vector3i cell(std::ptrdiff_t voxel) const;
+  Vector3d centre(std::ptrdiff_t voxel) const {
+    return low + spacing * (cell(voxel).cast<double>().array() + 0.5).matrix();
+  }
+  /// The voxel that holds p, or -1.
+  std::ptrdiff_t holding(const Vector3d& p) const;
 };
 
-/// Unit vectors spread evenly over the sphere (golden spiral).
-std::vector<Vector3d> sphere_directions(int count);
+/// One flag per voxel.
+using VoxelFlags = std::vector<char>;
 
-/// The grid whose cells cover `box` and `margin` around it. Throws phiz::Error(bad_input) for more than 3e8 cells.
-VoxelGrid grid_round(const Box& box, double cell, double margin);
+/// The voxels within `radius` (metres) of a flagged one, measured between centres.
+VoxelFlags dilate(const VoxelGrid& grid, const VoxelFlags& flags, double radius);
+/// `flags` and the gaps between them that a ball of that radius does not fit into (a morphological closing). The grid
+/// must leave `radius` free round the flags.
+VoxelFlags close_gaps(const VoxelGrid& grid, const VoxelFlags& flags, double radius);
+/// Pieces of flagged voxels that share faces: their number per voxel from 0, in order of their first voxel, or -1.
+/// Flagged voxels must not touch the side of the grid.
+std::vector<int> voxel_pieces(const VoxelGrid& grid, const VoxelFlags& flags);
 
-/// Marks the cells whose centres lie inside of `mesh` (crossing number of rays along x above zero; pieces may overlap),
-/// on top of what `solid` (count() flags) holds.
-void fill_inside(const VoxelGrid& grid, const TriangleMesh& mesh, std::vector<char>& solid);
-
-/// Distance from every cell to the nearest marked one, metres (Felzenszwalb and Huttenlocher 2012); a large number
-/// everywhere when none is marked.
-std::vector<float> distance_to(const VoxelGrid& grid, const std::vector<char>& marked);
-
-/// Fills gaps narrower than twice `radius`, and whatever a ball of that radius cannot reach from outside.
-void close_gaps(const VoxelGrid& grid, double radius, std::vector<char>& solid);
-
-/// Fills the cells from which at least the share `hidden` of all directions end in the solid within the grid: caves and
-/// chambers, however many small doors they have. Tested on cells of `coarse` times the size.
-void fill_caves(const VoxelGrid& grid, double hidden, int coarse, std::vector<char>& solid);
-
-/// A value per cell, interpolated linearly between centres and held beyond the outer ones.
-class VoxelField {
+/// A surface on a grid. What is inside is decided by the winding number (more than one half), so pieces may touch,
+/// overlap and have small holes.
+class SurfaceVoxels {
  public:
-  VoxelField(const VoxelGrid& grid, std::vector<float> values) : grid_(grid), values_(std::move(values)) {}
-  double operator()(const Vector3d& p) const;
-  const VoxelGrid& grid() const { return grid_; }
+  /// The grid reaches `margin` (metres, at least one voxel) beyond the surface. Throws phiz::Error(bad_input) when the
+  /// mesh is malformed or empty, or when there would be more than 2e8 voxels.
+  SurfaceVoxels(const TriangleMesh& surface, double spacing, double margin);
+  ~SurfaceVoxels();
+  SurfaceVoxels(SurfaceVoxels&&) noexcept;
+  SurfaceVoxels& operator=(SurfaceVoxels&&) noexcept;
+
+  const VoxelGrid& grid() const;
+  /// Per voxel: its centre is inside of the surface.
+  const VoxelFlags& inside() const;
+  /// Exact (not to the voxel), and quick away from the surface.
+  bool contains(const Vector3d& p) const;
 
  private:
-  VoxelGrid grid_;
-  std::vector<float> values_;
+  struct State;
+  std::unique_ptr<State> state_;
 };
-
-/// Distance to the surface of the solid, negative inside, smoothed over a cell, metres.
-VoxelField signed_distance_field(const VoxelGrid& grid, const std::vector<char>& solid);
 
 }  // namespace phiz

@@ -17,7 +17,7 @@ namespace phiz {
 enum class ContainerKind { head_template, face_model, performance, take };
 
 /// The version that this program writes; it reads all versions from 1 to this.
-inline constexpr int container_version = 2;
+inline constexpr int container_version = 3;
 
 /// Looks at the beginning of the file and its root only. Throws phiz::Error(bad_input) when it is no .phiz file.
 ContainerKind kind_of(const std::string& path);

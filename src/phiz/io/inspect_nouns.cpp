@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "phiz/geometry/operators.h"
 #include "phiz/io/container.h"
 #include "phiz/io/take_file.h"
 
@@ -15,6 +16,7 @@ using nlohmann::json;
 namespace {
 
 constexpr double to_millimetres = 1e3;
+constexpr double to_millilitres = 1e6;
 
 json describe(const HeadTemplate& head) {
   const auto tets_of = [&head](int tissue) { return (head.volume.region.array() == tissue).count(); };
@@ -23,7 +25,16 @@ json describe(const HeadTemplate& head) {
     parts.push_back({{"name", part.name}, {"vertices", part.mesh.V.rows()}, {"triangles", part.mesh.F.rows()}});
   }
   for (const Expression& e : head.expressions) expressions.push_back(e.name);
-  for (const Muscle& m : head.muscles) muscles.push_back(m.name);
+  const VectorXd volume = tet_volumes(head.volume.V, head.volume.T);
+  for (const Muscle& m : head.muscles) {
+    muscles.push_back({{"name", m.name},
+                       {"ring", m.ring},
+                       {"volume_ml", to_millilitres * m.fraction.dot(volume(m.tets))},
+                       {"tets", m.tets.size()},
+                       {"fibres", m.fibres.size()},
+                       {"surface_triangles", m.surface.F.rows()}});
+  }
+  const auto held = [&head](Hold hold) { return (head.attachments.hold.array() == static_cast<int>(hold)).count(); };
   const Eigen::RowVector3d size = head.skin.V.colwise().maxCoeff() - head.skin.V.colwise().minCoeff();
   return {{"kind", "head"},
           {"name", head.name},
@@ -40,6 +51,9 @@ json describe(const HeadTemplate& head) {
           {"parts", parts},
           {"expressions", expressions},
           {"muscles", muscles},
+          {"active_share", active_share(head)},
+          {"attachments", {{"pins", held(Hold::pin)}, {"slides", held(Hold::slide)}}},
+          {"identity_modes", head.identity.skin.cols()},
           {"landmarks", head.landmarks.size()},
           {"skull_landmarks", head.skull_landmarks.size()},
           {"contact_pairs", head.contact_pairs.size()}};

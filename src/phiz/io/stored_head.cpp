@@ -96,6 +96,8 @@ void store_muscles(const Hdf5Group& group, const std::vector<Muscle>& muscles) {
     }
     g.write("fibre_start", start);
     g.write("fibre_points", points);
+    g.set("ring", muscle.ring ? 1 : 0);
+    store_mesh(g.create_group("surface"), muscle.surface);
   }
 }
 
@@ -117,9 +119,46 @@ std::vector<Muscle> stored_muscles(const Hdf5Group& group) {
       }
       muscle.fibres.emplace_back(points.middleRows(start[k], start[k + 1] - start[k]));
     }
+    if (g.has_group("surface")) {  // since version 3
+      muscle.surface = stored_mesh(g.group("surface"));
+      muscle.ring = g.integer("ring") != 0;
+    }
     muscles.push_back(std::move(muscle));
   }
   return muscles;
+}
+
+void store_attachments(const Hdf5Group& group, const Attachments& attachments) {
+  group.write("vertices", attachments.vertices);
+  group.write("hold", attachments.hold);
+  group.write("normals", attachments.normals);
+}
+
+Attachments stored_attachments(const Hdf5Group& group) {
+  return {group.read<VectorXi>("vertices"), group.read<VectorXi>("hold"), group.read<MatrixX3d>("normals")};
+}
+
+void store_identity(const Hdf5Group& group, const IdentityModel& identity) {
+  group.write("skin", identity.skin);
+  group.write("deviation", identity.deviation);
+  const Hdf5Group parts = group.create_group("parts");
+  std::vector<std::string> names;
+  for (const auto& [name, modes] : identity.parts) {
+    parts.write(std::to_string(names.size()), modes);
+    names.push_back(name);
+  }
+  parts.write_strings("names", names);
+}
+
+IdentityModel stored_identity(const Hdf5Group& group) {
+  IdentityModel identity;
+  identity.skin = group.read<Eigen::MatrixXf>("skin");
+  identity.deviation = group.read<VectorXd>("deviation");
+  const Hdf5Group parts = group.group("parts");
+  const auto names = parts.read_strings("names");
+  for (std::size_t i = 0; i < names.size(); ++i)
+    identity.parts[names[i]] = parts.read<Eigen::MatrixXf>(std::to_string(i));
+  return identity;
 }
 
 void store_contact(const Hdf5Group& group, const HeadTemplate& head) {
@@ -197,6 +236,8 @@ void store_head(const Hdf5Group& group, const HeadTemplate& head) {
   store_expressions(group.create_group("expressions"), head.expressions);
   store_landmarks(group.create_group("landmarks"), head);
   store_muscles(group.create_group("muscles"), head.muscles);
+  store_attachments(group.create_group("attachments"), head.attachments);
+  store_identity(group.create_group("identity"), head.identity);
   store_contact(group.create_group("contact"), head);
   group.write("left_eye_centre", head.left_eye_centre);
   group.write("right_eye_centre", head.right_eye_centre);
@@ -223,6 +264,9 @@ HeadTemplate stored_head(const Hdf5Group& group) {
   head.expressions = stored_expressions(group.group("expressions"));
   read_landmarks(group.group("landmarks"), head);
   head.muscles = stored_muscles(group.group("muscles"));
+  // Since version 3.
+  if (group.has_group("attachments")) head.attachments = stored_attachments(group.group("attachments"));
+  if (group.has_group("identity")) head.identity = stored_identity(group.group("identity"));
   read_contact(group.group("contact"), head);
   head.left_eye_centre = group.read<Vector3d>("left_eye_centre");
   head.right_eye_centre = group.read<Vector3d>("right_eye_centre");

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "phiz/anatomy/open/face_kit_layout.h"
+#include "phiz/geometry/solidify.h"
 #include "phiz/geometry/spatial_query.h"
 #include "phiz/geometry/surface.h"
-#include "phiz/geometry/voxels.h"
 
 namespace phiz {
 
@@ -33,15 +33,15 @@ TriangleMesh solid(const BodyParts& parts, BodyPartKind kind, int triangles) {
   for (const BodyPartName& part : needed_body_parts())
     if (part.kind == kind) meshes.push_back(&parts.at(part.fma));
   const VoxelGrid grid = grid_round(box_round(meshes), cell, gap + 4 * cell);
-  std::vector<char> cells(grid.count(), 0);
+  VoxelFlags cells(static_cast<std::size_t>(grid.count()), 0);
   for (const TriangleMesh* mesh : meshes) fill_inside(grid, *mesh, cells);
   fill_caves(grid, hidden, 4, cells);
-  close_gaps(grid, gap, cells);
+  seal_gaps(grid, gap, cells);
   PolygoniseOptions options;
   options.edge_length = 0.0018;
   options.projection_steps = 1;
   options.improve = false;
-  const Box box{grid.origin, grid.centre(grid.size.x() - 1, grid.size.y() - 1, grid.size.z() - 1)};
+  const Box box{grid.centre(0), grid.centre(grid.count() - 1)};
   return decimate(polygonise(signed_distance_field(grid, cells), box, options), triangles);
 }
 
