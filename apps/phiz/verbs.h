@@ -10,6 +10,7 @@ class App;
 namespace phiz {
 
 void add_template(CLI::App& app);
+void add_template_build(CLI::App& verb);  ///< part of add_template
 void add_animate(CLI::App& app);
 void add_export(CLI::App& app);
 void add_inspect(CLI::App& app);

@@ -6,13 +6,13 @@
 #include <functional>
 #include <set>
 
-#include "phiz/geometry/untangle.h"
 #include "phiz/anatomy/open/face_kit_layout.h"
 #include "phiz/core/error.h"
 #include "phiz/geometry/coarsen.h"
 #include "phiz/geometry/geodesic.h"
 #include "phiz/geometry/surface.h"
 #include "phiz/geometry/topology.h"
+#include "phiz/geometry/untangle.h"
 #include "phiz/geometry/validate.h"
 
 namespace phiz {
@@ -137,6 +137,15 @@ class Regions {
     set("upperLipInner", [&](int v, const Vector3d&) { return mouth_[v] && distance[v] < inner && !is_lower(v); });
     set("lowerLipInner", [&](int v, const Vector3d&) { return mouth_[v] && distance[v] < inner && is_lower(v); });
     set("mouthBag", [&](int v, const Vector3d&) { return mouth_[v] != 0; });
+    // Beyond the ends of the roots; the lining of lips and cheeks is what lies between.
+    double top = -1e9, bottom = 1e9;
+    for (int v = face_kit::teeth_vertices.first; v < face_kit::teeth_vertices.end; ++v) {
+      top = std::max(top, kit_.neutral.V(v, 1));
+      bottom = std::min(bottom, kit_.neutral.V(v, 1));
+    }
+    constexpr double root_end = 0.006;
+    set("oralRoof", [&](int v, const Vector3d& p) { return mouth_[v] && p.y() > top - root_end; });
+    set("oralFloor", [&](int v, const Vector3d& p) { return mouth_[v] && p.y() < bottom + root_end; });
   }
 
   void name_lids(int side, const std::string& name) {
