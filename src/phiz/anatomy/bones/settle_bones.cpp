@@ -10,6 +10,7 @@
 
 #include "phiz/anatomy/bones/implicit.h"
 #include "phiz/core/error.h"
+#include "phiz/geometry/coarsen.h"
 #include "phiz/geometry/remesh.h"
 #include "phiz/geometry/spatial_query.h"
 #include "phiz/geometry/surface.h"
@@ -220,29 +221,31 @@ ClippedBones clip_bones(const BoneShape& skull, const BoneShape& mandible, const
 }
 
 TriangleMesh bone_surface(const ScalarField& bone, const MatrixX3d& around, double edge_length, const char* name) {
-  constexpr double finest_shape = 0.0032;  // longer triangles than the thin parts need come from decimation
+  constexpr double finest_shape = 0.0032;  // longer edges than the thin parts need come from coarsening
   PolygoniseOptions options;
   options.edge_length = std::min(edge_length, finest_shape);
   options.lipschitz = 1.5;
   options.projection_steps = 1;
   TriangleMesh mesh = main_part(polygonise(bone, bounds(around), options), name);
   if (edge_length > finest_shape) {
-    const double area = 0.5 * triangle_area_normals(mesh.V, mesh.F).rowwise().norm().sum();
-    const TriangleMesh fine = mesh;
-    for (const double more : {1.0, 1.4, 2.0}) {
-      mesh = decimate(fine, static_cast<int>(more * area / (0.433 * edge_length * edge_length)));
-      if (self_intersections(mesh).empty()) break;
-    }
+    CoarsenOptions coarser;
+    coarser.edge_length = [edge_length](const Vector3d&) { return edge_length; };
+    mesh = coarsen(mesh, coarser);
   }
   return mesh;
 }
 
 BoneSurfaces settle_bones(const ClippedBones& fields, const TriangleMesh& simulated_skin, const BoneOptions& options) {
   const double clearance = 0.8 * options.inner_clearance;
-  BoneSurfaces bones{clear_surface(fields.skull, simulated_skin, options.skull_edge, clearance, "skull"),
-                     clear_surface(fields.mandible, simulated_skin, options.mandible_edge, clearance, "mandible")};
-  separate(bones.mandible, bones.skull, 0.6 * options.joint_gap);
-  return bones;
+  for (const double finer : {1.0, 0.8, 0.6}) {
+    BoneSurfaces bones{
+        clear_surface(fields.skull, simulated_skin, finer * options.skull_edge, clearance, "skull"),
+        clear_surface(fields.mandible, simulated_skin, finer * options.mandible_edge, clearance, "mandible")};
+    separate(bones.mandible, bones.skull, 0.6 * options.joint_gap);
+    const TriangleMesh skin{simulated_skin.V, simulated_skin.F, {}, {}};
+    if (self_intersections(joined(std::array{skin, bones.skull, bones.mandible})).empty()) return bones;
+  }
+  fail("skull, mandible and skin could not be kept apart", "use a finer size");
 }
 
 }  // namespace phiz

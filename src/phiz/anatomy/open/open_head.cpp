@@ -9,16 +9,18 @@
 
 #include "phiz/anatomy/bones/implicit.h"
 #include "phiz/anatomy/contact_regions.h"
+#include "phiz/anatomy/fibres.h"
 #include "phiz/anatomy/open/face_guide.h"
 #include "phiz/anatomy/open/face_kit_layout.h"
 #include "phiz/anatomy/open/face_kit_skin.h"
 #include "phiz/anatomy/open/jaw_of_mandible.h"
 #include "phiz/anatomy/open/kit_expressions.h"
 #include "phiz/anatomy/open/kit_parts.h"
+#include "phiz/anatomy/open/part_muscles.h"
 #include "phiz/anatomy/open/registration.h"
 #include "phiz/anatomy/skin_maps.h"
 #include "phiz/geometry/remesh.h"
-#include "phiz/geometry/spatial_query.h"
+#include "phiz/geometry/solidify.h"
 #include "phiz/geometry/surface.h"
 #include "phiz/geometry/topology.h"
 
@@ -31,24 +33,32 @@ struct SizePlan {
   int skin_vertices;
   double skull_edge, mandible_edge;
 };
-constexpr std::array<SizePlan, 3> plans{{{1900, 0.0160, 0.0100}, {5600, 0.0095, 0.0065}, {12500, 0.0050, 0.0036}}};
+constexpr std::array<SizePlan, 3> plans{{{1350, 0.0120, 0.0090}, {5600, 0.0095, 0.0065}, {12500, 0.0050, 0.0036}}};
 
-/// Outer skin and inner sheets of the drawn skin.
-BoneEnvelope envelope(const FaceKitSkin& skin) {
-  std::vector<char> inner(static_cast<std::size_t>(skin.mesh.V.rows()), 0);
+/// Outer skin and inner sheets of a skin.
+BoneEnvelope envelope(const TriangleMesh& skin, const SkinRegions& regions) {
+  std::vector<char> inner(static_cast<std::size_t>(skin.V.rows()), 0);
   for (const char* name : {"mouthBag", "leftSocket", "rightSocket"})
-    for (const int v : skin.regions.at(name)) inner[static_cast<std::size_t>(v)] = 1;
+    for (const int v : regions.at(name)) inner[static_cast<std::size_t>(v)] = 1;
   std::vector<int> in, out;
-  for (int f = 0; f < skin.mesh.F.rows(); ++f) {
-    const auto is_inner = [&](int k) { return inner[static_cast<std::size_t>(skin.mesh.F(f, k))] != 0; };
+  for (int f = 0; f < skin.F.rows(); ++f) {
+    const auto is_inner = [&](int k) { return inner[static_cast<std::size_t>(skin.F(f, k))] != 0; };
     (is_inner(0) && is_inner(1) && is_inner(2) ? in : out).push_back(f);
   }
-  return {skin.mesh.V, skin.mesh.F(out, Eigen::all), skin.mesh.F(in, Eigen::all)};
+  return {skin.V, skin.F(out, Eigen::all), skin.F(in, Eigen::all)};
 }
 
-ScalarField distance_field(const TriangleMesh& solid) {
-  const auto query = std::make_shared<SurfaceQuery>(solid);
-  return [query](const Vector3d& p) { return query->signed_distance(p); };
+/// Distance to the surface of a solid, by way of voxels, with gaps narrower than twice `gap` sealed.
+ScalarField distance_field(const TriangleMesh& solid, double gap) {
+  constexpr double spacing = 0.001, margin = 0.03;
+  const VoxelGrid grid =
+      grid_round({solid.V.colwise().minCoeff().transpose(), solid.V.colwise().maxCoeff().transpose()}, spacing, margin);
+  VoxelFlags cells(static_cast<std::size_t>(grid.count()), 0);
+  fill_inside(grid, solid, cells);
+  seal_gaps(grid, gap, cells);
+  return [field = std::make_shared<VoxelField>(signed_distance_field(grid, cells))](const Vector3d& p) {
+    return (*field)(p);
+  };
 }
 
 /// The regions of the drawn skin on the simulation skin: vertices that are drawn mostly from theirs.
@@ -126,7 +136,8 @@ HeadTemplate build_open_head(const FaceKit& kit, const BodyParts& parts, const O
   TriangleMesh skull = solids.skull, mandible = solids.mandible;
   skull.V = map(skull.V);
   mandible.V = map(mandible.V);
-  const ScalarField cranium = distance_field(skull);
+  constexpr double sealed = 0.3;  // of the edge length: what long triangles cannot follow
+  const ScalarField cranium = distance_field(skull, sealed * plan.skull_edge);
   std::vector<Vector3d> column;
   for (const BodyPartName& part : optional_body_parts())
     if (const auto found = parts.meshes.find(part.fma); found != parts.meshes.end())
@@ -140,16 +151,16 @@ HeadTemplate build_open_head(const FaceKit& kit, const BodyParts& parts, const O
         return f;
       },
       {}};
-  const BoneShape mandible_shape{distance_field(mandible), {}};
+  const BoneShape mandible_shape{distance_field(mandible, sealed * plan.mandible_edge), {}};
   BoneOptions bone_options;
   bone_options.skull_edge = plan.skull_edge;
   bone_options.mandible_edge = plan.mandible_edge;
   bone_options.joint_gap += 0.18 * plan.skull_edge;  // long triangles cut corners
-  const BoneSurfaces bones =
-      settle_bones(clip_bones(skull_shape, mandible_shape, envelope(skin), bone_options), simulated, bone_options);
-  report("tetrahedra");
   head.skin_sampling = sample_skin(skin.mesh, simulated.V);
   const SkinRegions regions = simulated_regions(skin, head.skin_sampling);
+  const BoneSurfaces bones = settle_bones(
+      clip_bones(skull_shape, mandible_shape, envelope(simulated, regions), bone_options), simulated, bone_options);
+  report("tetrahedra");
   build_volume(head, simulated, regions.at("shoulders"), bones, options.size);
 
   report("skin maps and parts");
@@ -167,6 +178,9 @@ HeadTemplate build_open_head(const FaceKit& kit, const BodyParts& parts, const O
   head.left_eye_centre = guide.left_eye;
   head.right_eye_centre = guide.right_eye;
   assign_contacts(head, regions);
+
+  report("muscles");
+  head.muscles = make_muscles(head.volume, part_muscles(parts, map, guide, skin, {skull, mandible}));
 
   report("expressions");
   head.expressions = kit_expressions(kit, head.skin.V.rows(), head.jaw);
