@@ -83,10 +83,12 @@ void assign_carriers(HeadTemplate& head, const VectorXi& neck_cap) {
 /// Tets between skin and bones. Rounder tets are more tets: the bound on their shape brings the number of soft tets
 /// into the plan's range.
 void build_volume(HeadTemplate& head, const SizePlan& plan, const RefinedSkin& skin, const BoneSurfaces& bones) {
+  constexpr double bone_give = 0.0005;
   const std::array<RegionSurface, 3> surfaces{{{"skin", {skin.mesh.V, skin.mesh.F, {}, {}}, Tissue::flesh},
-                                               {"skull", bones.skull, Tissue::skull},
-                                               {"mandible", bones.mandible, Tissue::mandible}}};
+                                               {"skull", bones.skull, Tissue::skull, false, 0, bone_give},
+                                               {"mandible", bones.mandible, Tissue::mandible, false, 0, bone_give}}};
   TetrahedraliseOptions options;
+  options.insert_below = 8;
   options.min_dihedral = 5;
   options.radius_edge_ratio = plan.radius_edge_ratio;
   double low = 1.2, high = 6;
