@@ -50,7 +50,7 @@ void build_volume(HeadTemplate& head, const TriangleMesh& skin, const VectorXi& 
                   HeadSize size) {
   const SizePlan& plan = plans[static_cast<std::size_t>(size)];
   constexpr double bone_give = 0.0005;  // metres: bones may move a little for better tets, the skin may not
-  const std::array<RegionSurface, 3> surfaces{{{"skin", {skin.V, skin.F, {}, {}}, Tissue::flesh},
+  std::array<RegionSurface, 3> surfaces{{{"skin", {skin.V, skin.F, {}, {}}, Tissue::flesh},
                                                {"skull", bones.skull, Tissue::skull, false, 0, bone_give},
                                                {"mandible", bones.mandible, Tissue::mandible, false, 0, bone_give}}};
   const auto s = static_cast<int>(skin.V.rows());
@@ -62,11 +62,15 @@ void build_volume(HeadTemplate& head, const TriangleMesh& skin, const VectorXi& 
   options.radius_edge_ratio = plan.radius_edge_ratio;
   // Rounder tets are more tets: the bound on their shape brings the number of soft tets into the plan's range.
   double low = 1.2, high = 6;
-  for (int attempt = 0; attempt < 5; ++attempt) {
+  for (int attempt = 0; attempt < 8; ++attempt) {
     head.volume = tetrahedralise(surfaces, options);
     assign_carriers(head, held);
     const Eigen::Index count = soft_tets(head).size();
     if (count >= plan.soft_low && count <= plan.soft_high) return;
+    if (count < plan.soft_low && high < 1.1 * low) {  // rounder does not do it: shorter edges in the flesh
+      surfaces[0].max_edge = surfaces[0].max_edge > 0 ? 0.85 * surfaces[0].max_edge : 0.008;
+      continue;
+    }
     (count > plan.soft_high ? low : high) = options.radius_edge_ratio;
     options.radius_edge_ratio = std::sqrt(low * high);
   }

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "phiz/core/parallel.h"
 #include "phiz/geometry/cgal_mesh.h"
 #include "phiz/geometry/spatial_query.h"
 #include "phiz/geometry/surface.h"
@@ -40,6 +41,7 @@ class Coarsener {
         mesh_(to_cgal(fine, "coarsen")) {}
 
   TriangleMesh run() {
+    if (options_.slenderness > 0) measure_thickness();
     for (int round = 0; round < options_.rounds; ++round) {
       measure();
       collapse();
@@ -63,9 +65,37 @@ class Coarsener {
     return sum > 0 ? 2 * std::sqrt(3.0) * normal(a, b, c).norm() / sum : 0;
   }
 
+  /// How far it is through the body, per fine vertex; the least of a vertex and its neighbours.
+  void measure_thickness() {
+    constexpr double lift = 1e-5, farthest = 0.1;
+    const MatrixX3d inward = -vertex_normals(fine_.V, fine_.F);
+    VectorXd through(fine_.V.rows());
+    parallel_for(
+        through.size(),
+        [&](std::ptrdiff_t v) {
+          const auto hit = query_.first_hit(fine_.V.row(v) + lift * inward.row(v), inward.row(v), 0, farthest);
+          through[v] = hit ? hit->t : farthest;
+        },
+        64);
+    thickness_ = through;
+    for (Eigen::Index f = 0; f < fine_.F.rows(); ++f) {
+      const double least = std::min({through[fine_.F(f, 0)], through[fine_.F(f, 1)], through[fine_.F(f, 2)]});
+      for (int k = 0; k < 3; ++k) thickness_[fine_.F(f, k)] = std::min(thickness_[fine_.F(f, k)], least);
+    }
+  }
+
+  double wanted_at(const Vector3d& p) const {
+    const double length = options_.edge_length(p);
+    if (thickness_.size() == 0) return length;
+    const SurfacePoint near = query_.closest_point(p);
+    double thickness = 0;
+    for (int k = 0; k < 3; ++k) thickness += near.barycentric[k] * thickness_[fine_.F(near.triangle, k)];
+    return std::min(length, options_.slenderness * thickness);
+  }
+
   void measure() {
     wanted_.assign(mesh_.num_vertices(), 0);
-    for (const Vertex v : mesh_.vertices()) wanted_[v] = options_.edge_length(at(v));
+    for (const Vertex v : mesh_.vertices()) wanted_[v] = wanted_at(at(v));
   }
 
   double relative_length(Vertex a, Vertex b) const {
@@ -143,7 +173,7 @@ class Coarsener {
       Vector3d p = 0.5 * (at(a) + at(b));
       if (!project(p, vertex_normal(a) + vertex_normal(b), (at(a) - at(b)).norm())) continue;
       if (!fits(a, b, a, p) || !fits(b, a, b, p) || !keeps_form(a, b, p)) continue;
-      const double size = options_.edge_length(p);
+      const double size = wanted_at(p);
       const Vertex left = CGAL::Euler::collapse_edge(e, mesh_);
       mesh_.point(left) = {p.x(), p.y(), p.z()};
       wanted_[left] = size;
@@ -195,6 +225,7 @@ class Coarsener {
   MatrixX3d normals_;
   SurfaceQuery query_;
   CgalMesh mesh_;
+  VectorXd thickness_;
   std::vector<double> wanted_;  // edge length per vertex
 };
 

@@ -11,6 +11,8 @@ namespace phiz {
 struct CoarsenOptions {
   /// Wanted edge length at a point, metres. Where it is shorter than the edges of the surface these stay as they are.
   std::function<double(const Vector3d&)> edge_length;
+  /// Where the body behind the surface is thin, edges are no longer than this many times its thickness; 0: no limit.
+  double slenderness = 0;
   int rounds = 8;  ///< of collapsing, flipping and relaxing
 };
 

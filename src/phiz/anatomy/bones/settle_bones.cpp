@@ -230,6 +230,7 @@ TriangleMesh bone_surface(const ScalarField& bone, const MatrixX3d& around, doub
   if (edge_length > finest_shape) {
     CoarsenOptions coarser;
     coarser.edge_length = [edge_length](const Vector3d&) { return edge_length; };
+    coarser.slenderness = 1.5;
     mesh = coarsen(mesh, coarser);
   }
   return mesh;

@@ -33,7 +33,7 @@ struct SizePlan {
   int skin_vertices;
   double skull_edge, mandible_edge;
 };
-constexpr std::array<SizePlan, 3> plans{{{1350, 0.0120, 0.0090}, {5600, 0.0095, 0.0065}, {12500, 0.0050, 0.0036}}};
+constexpr std::array<SizePlan, 3> plans{{{1350, 0.0120, 0.0090}, {5900, 0.0090, 0.0060}, {12500, 0.0050, 0.0036}}};
 
 /// Outer skin and inner sheets of a skin.
 BoneEnvelope envelope(const TriangleMesh& skin, const SkinRegions& regions) {

@@ -55,15 +55,17 @@ int mirrored_landmark(int i) {
   return pairs.at(i);
 }
 
-/// Muscles of the neck reach down to the collar bones; the bust ends above. What lies below the jaw is drawn up.
-void shorten_neck(MatrixX3d& V, double chin) {
-  const double from = chin + 0.002, room = 0.040;
-  for (Eigen::Index v = 0; v < V.rows(); ++v)
-    if (V(v, 1) < from) V(v, 1) = from - room * (1 - std::exp(-(from - V(v, 1)) / room));
+/// Without what lies below `lowest`: muscles of the neck reach down to the collar bones, the bust ends above.
+TriangleMesh above(const TriangleMesh& mesh, double lowest) {
+  std::vector<int> kept;
+  for (int f = 0; f < mesh.F.rows(); ++f)
+    if (mesh.V(mesh.F(f, 0), 1) > lowest && mesh.V(mesh.F(f, 1), 1) > lowest && mesh.V(mesh.F(f, 2), 1) > lowest)
+      kept.push_back(f);
+  return remove_unused_vertices(mesh.V, mesh.F(kept, Eigen::all)).mesh;
 }
 
 TriangleMesh gathered(const BodyParts& parts, const std::vector<int>& fma, const SpaceMap& map) {
-  constexpr int most_triangles = 6000;
+  constexpr int most_triangles = 4000;
   std::vector<TriangleMesh> pieces;
   for (const int id : fma) {
     TriangleMesh piece = parts.at(id);
@@ -75,16 +77,35 @@ TriangleMesh gathered(const BodyParts& parts, const std::vector<int>& fma, const
   return joined(pieces);
 }
 
-/// The share of the surface's vertices with the lowest and with the highest value.
-void set_ends(MuscleShape& shape, const VectorXd& along) {
+/// The rows with the lowest and the highest values: a tenth of them each.
+struct Ends {
+  std::vector<int> low, high;
+};
+Ends ends_of(std::vector<int> rows, const VectorXd& along) {
   constexpr double share = 0.10;
-  std::vector<int> order(static_cast<std::size_t>(along.size()));
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return along[a] < along[b]; });
-  const auto count =
-      std::max<std::ptrdiff_t>(4, static_cast<std::ptrdiff_t>(share * static_cast<double>(order.size())));
-  shape.origin = shape.surface.V(std::vector<int>(order.begin(), order.begin() + count), Eigen::all);
-  shape.insertion = shape.surface.V(std::vector<int>(order.end() - count, order.end()), Eigen::all);
+  std::stable_sort(rows.begin(), rows.end(), [&](int a, int b) { return along[a] < along[b]; });
+  const auto count = std::max<std::ptrdiff_t>(4, static_cast<std::ptrdiff_t>(share * static_cast<double>(rows.size())));
+  return {{rows.begin(), rows.begin() + count}, {rows.end() - count, rows.end()}};
+}
+
+void set_ends(MuscleShape& shape, const VectorXd& along) {
+  std::vector<int> rows(static_cast<std::size_t>(along.size()));
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<int>(i);
+  const Ends ends = ends_of(rows, along);
+  shape.origin = shape.surface.V(ends.low, Eigen::all);
+  shape.insertion = shape.surface.V(ends.high, Eigen::all);
+}
+
+/// The same for the two halves of a muscle in the midline.
+void set_ends_of_halves(MuscleShape& shape, const VectorXd& along) {
+  std::vector<int> left, right;
+  for (int v = 0; v < along.size(); ++v) (shape.surface.V(v, 0) > 0 ? left : right).push_back(v);
+  Ends a = ends_of(left, along);
+  const Ends b = ends_of(right, along);
+  a.low.insert(a.low.end(), b.low.begin(), b.low.end());
+  a.high.insert(a.high.end(), b.high.begin(), b.high.end());
+  shape.origin = shape.surface.V(a.low, Eigen::all);
+  shape.insertion = shape.surface.V(a.high, Eigen::all);
 }
 
 /// Brings the ring of the lips into the lips of the face: the edges of its opening under the line where they meet, its
@@ -131,7 +152,7 @@ Rbf into_lips(const BodyParts& parts, const SpaceMap& map, const FaceGuide& guid
 
 /// Moves muscles as wholes towards the flesh, smoothly in space, then what is still outside on its own.
 void settle(std::vector<MuscleShape>& shapes, const FleshLayer& layer) {
-  constexpr double spacing = 0.007, smoothing = 0.01;
+  constexpr double spacing = 0.009, smoothing = 0.01;
   for (int round = 0; round < 3; ++round) {
     std::map<std::tuple<int, int, int>, Vector3d> samples;
     for (const MuscleShape& shape : shapes)
@@ -195,10 +216,11 @@ std::vector<MuscleShape> part_muscles(const BodyParts& parts, const SpaceMap& ma
   add("procerus", {55611, 55610});
   add("depressorSepti", {55609, 55608});
 
+  constexpr double below_chin = 0.050;
   const Rbf lips = into_lips(parts, map, guide, bones);
   for (MuscleShape& shape : shapes) {
     shape.surface.V += lips.evaluate(shape.surface.V);
-    shorten_neck(shape.surface.V, guide.landmarks[8].y());
+    shape.surface = above(shape.surface, guide.landmarks[8].y() - below_chin);
   }
   settle(shapes, FleshLayer(skin, bones));
 
@@ -215,8 +237,11 @@ std::vector<MuscleShape> part_muscles(const BodyParts& parts, const SpaceMap& ma
       }
     }
   }
-  set_ends(shapes[shapes.size() - 2], shapes[shapes.size() - 2].surface.V.col(1));
-  set_ends(shapes.back(), shapes.back().surface.V.col(1));
+  for (MuscleShape& shape : shapes) {
+    if (shape.name == "procerus") set_ends_of_halves(shape, shape.surface.V.col(1));
+    if (shape.name == "depressorSepti")
+      set_ends_of_halves(shape, -(shape.surface.V.rowwise() - guide.landmarks[33].transpose()).rowwise().norm());
+  }
   return shapes;
 }
 
