@@ -132,6 +132,7 @@ Subject open_head(const SubjectOptions& options, const std::shared_ptr<const Hea
     subject.scale = view->scale;
     subject.has_legend = true;
   }
+  subject.names = head_legend(*head, *view);
   for (const Expression& e : head->expressions) subject.expressions.push_back(e.name);
   subject.points = head->skin.V;
   subject.scene = [head, view](int, bool) { return head_scene(*head, *view); };
@@ -160,6 +161,7 @@ Subject open_take(const SubjectOptions& options) {
                                               : load_head_template(options.model));
   Subject subject;
   subject.name = reader->head().model;
+  if (head != nullptr) subject.names = head_legend(*head, options.view);
   subject.frames = reader->frames();
   subject.frame_rate = reader->head().frame_rate;
   subject.points = reader->head().skin.V;

@@ -15,14 +15,18 @@ struct CutPlane {
   Vector3d normal = Vector3d::UnitX();
 };
 
-/// The part of a surface that is kept. Crossing triangles are cut; normals, colours, rest positions and edge flags
-/// follow. The cut edge itself is not drawn in wireframes. Throws phiz::Error(bad_input) for a plane without direction.
+/// The part of a surface that is kept. Crossing triangles are cut; normals, colours, fibres, rest positions and
+/// edge flags follow. The cut edge itself is not drawn in wireframes. Throws phiz::Error(bad_input) for a plane without
+/// direction.
 Surface cut_surface(const Surface& surface, const CutPlane& plane);
 
 /// The cross-section of tets: a flat surface in the plane, facing the removed side, coloured by region tag. Tags that
 /// are not in `colours` get `other`. With `cells`, the edges of the tets' sections are drawn.
 Surface cross_section(const TetMesh& mesh, const CutPlane& plane, const std::map<int, Vector3d>& colours,
                       bool cells = false, const Vector3d& other = Vector3d(0.4, 0.4, 0.4));
+
+/// Likewise with a colour per tet (rows of mesh.T).
+Surface cross_section(const TetMesh& mesh, const CutPlane& plane, const MatrixX3d& tet_colours, bool cells = false);
 
 /// The cut of a closed surface as a flat surface in the plane, facing the removed side: what lies inside an odd number
 /// of shells. `mesh` is in its own frame; the result has the same transform and material as `surface`.

@@ -13,13 +13,17 @@ namespace phiz {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, HeadStyle>, 7> styles = {{{"clay", HeadStyle::clay},
-                                                                           {"skin", HeadStyle::skin},
-                                                                           {"wireframe", HeadStyle::wireframe},
-                                                                           {"anatomy", HeadStyle::anatomy},
-                                                                           {"bones", HeadStyle::bones},
-                                                                           {"cutaway", HeadStyle::cutaway},
-                                                                           {"heat", HeadStyle::heat}}};
+constexpr std::array<std::pair<std::string_view, HeadStyle>, 11> styles = {{{"clay", HeadStyle::clay},
+                                                                            {"skin", HeadStyle::skin},
+                                                                            {"wireframe", HeadStyle::wireframe},
+                                                                            {"anatomy", HeadStyle::anatomy},
+                                                                            {"bones", HeadStyle::bones},
+                                                                            {"cutaway", HeadStyle::cutaway},
+                                                                            {"muscles", HeadStyle::muscles},
+                                                                            {"fibres", HeadStyle::fibres},
+                                                                            {"attachments", HeadStyle::attachments},
+                                                                            {"contacts", HeadStyle::contacts},
+                                                                            {"heat", HeadStyle::heat}}};
 
 constexpr double average_eye_distance = 0.063;  // metres
 

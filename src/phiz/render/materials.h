@@ -12,6 +12,6 @@ Material eye_material();     ///< wet, sharp glint
 Material enamel_material();  ///< teeth
 Material gum_material();     ///< wet mucosa: gums, tongue
 Material bone_material();    ///< dry bone
-Material muscle_material();  ///< dark red
+Material muscle_material();  ///< moist; white, to be coloured by Surface::colour
 
 }  // namespace phiz
