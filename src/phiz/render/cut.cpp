@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "phiz/core/error.h"
+#include "phiz/render/materials.h"
 
 namespace phiz {
 
@@ -171,10 +172,7 @@ Surface cross_section(const TetMesh& mesh, const CutPlane& asked, const MatrixX3
   section.mesh.F.resize(static_cast<Eigen::Index>(triangles.size()), 3);
   for (std::size_t i = 0; i < triangles.size(); ++i)
     for (int k = 0; k < 3; ++k) section.mesh.F(static_cast<Eigen::Index>(i), k) = triangles[i][k];
-  section.material.albedo = Vector3d::Ones();
-  section.material.roughness = 0.7;
-  section.material.specular = 0.02;
-  section.material.unlit = 0.35;
+  section.material = section_material();
   section.flat = true;
   section.wireframe.shown = cells;
   section.wireframe.width = 0.8;

@@ -6,6 +6,7 @@
 #include "phiz/geometry/spatial_query.h"
 #include "phiz/geometry/topology.h"
 #include "phiz/render/head_paint.h"
+#include "phiz/render/materials.h"
 #include "phiz/render/muscle_surfaces.h"
 #include "phiz/render/palette.h"
 
@@ -14,18 +15,16 @@ namespace phiz::detail {
 namespace {
 
 // Sections lie a hair in front of each other, so that the right one wins where two show.
-constexpr double fraction_lift = 1e-5, muscle_lift = 2e-5, bone_lift = 3e-5, soft_lift = 5e-5, tooth_lift = 8e-5;
+constexpr double rigid_lift = 0.5e-5, fraction_lift = 1e-5, muscle_lift = 2e-5, bone_lift = 3e-5, soft_lift = 5e-5,
+                 tooth_lift = 8e-5;
 
 /// A flat surface in the cut with its tissue's plain colour, moved towards the viewer by `lift`.
 Surface flat_section(Surface section, const Vector3d& colour, const CutPlane& plane, double lift) {
   section.transform = Eigen::Translation3d(plane.normal.normalized() * lift) * section.transform;
   section.colour.resize(0, 3);
   section.colour_at = nullptr;
-  section.material = Material();
+  section.material = section_material();
   section.material.albedo = colour;
-  section.material.roughness = 0.7;
-  section.material.specular = 0.02;
-  section.material.unlit = 0.35;
   section.outline = 0.45;
   return section;
 }
@@ -80,25 +79,35 @@ MatrixX3d tet_colours(const TetMesh& volume, const VectorXd& share) {
   return colours;
 }
 
+/// The section of some of the tets. `colours`: a row for each of them.
+void add_tets(Scene& scene, const PosedHead& posed, const std::vector<int>& tets, const MatrixX3d& colours,
+              const CutPlane& plane, double lift) {
+  TetMesh part;
+  part.V = posed.volume_now;
+  part.T = posed.head->volume.T(tets, Eigen::all);
+  Surface section = cross_section(part, plane, colours);
+  if (section.mesh.F.rows() == 0) return;
+  section.transform = Eigen::Translation3d(plane.normal.normalized() * lift) * section.transform;
+  scene.surfaces.push_back(std::move(section));
+}
+
+/// What moves with the bones: it shows where the bones as drawn are hollow.
+void add_rigid_tets(Scene& scene, const PosedHead& posed, const CutPlane& plane) {
+  std::vector<int> rigid;
+  const VectorXi& region = posed.head->volume.region;
+  for (int t = 0; t < region.size(); ++t)
+    if (region[t] != Tissue::flesh) rigid.push_back(t);
+  add_tets(scene, posed, rigid, tissue_colour::cavity.transpose().replicate(rigid.size(), 1), plane, rigid_lift);
+}
+
 /// The tets in which muscles without a surface lie.
 void add_fractions(Scene& scene, const PosedHead& posed, const HeadViewOptions& options) {
   const VectorXd share = filled_share(posed, options, false);
-  const MatrixX3d all_colours = tet_colours(posed.head->volume, share);
-  TetMesh filled;
-  filled.V = posed.volume_now;
-  const Eigen::Index count = (share.array() > 0.03).count();
-  filled.T.resize(count, 4);
-  MatrixX3d colours(count, 3);
-  Eigen::Index row = 0;
-  for (Eigen::Index t = 0; t < share.size(); ++t) {
-    if (!(share[t] > 0.03)) continue;
-    filled.T.row(row) = posed.head->volume.T.row(t);
-    colours.row(row++) = all_colours.row(t);
-  }
-  if (count == 0) return;
-  Surface section = cross_section(filled, options.plane, colours);
-  section.transform = Eigen::Translation3d(options.plane.normal.normalized() * fraction_lift) * section.transform;
-  scene.surfaces.push_back(std::move(section));
+  std::vector<int> filled;
+  for (int t = 0; t < share.size(); ++t)
+    if (share[t] > 0.03) filled.push_back(t);
+  const MatrixX3d colours = tet_colours(posed.head->volume, share)(filled, Eigen::all);
+  add_tets(scene, posed, filled, colours, options.plane, fraction_lift);
 }
 
 void add_section(Scene& scene, const Surface& closed, const Vector3d& colour, const CutPlane& plane, double lift) {
@@ -121,7 +130,10 @@ void add_soft_sections(Scene& scene, const PosedHead& posed, const HeadViewOptio
     flesh.colour_at = rim_of_skin(posed);
     flesh.outline = 0;
     if (flesh.mesh.F.rows() > 0) scene.surfaces.push_back(std::move(flesh));
-    if (tissue) add_fractions(scene, posed, options);
+    if (tissue) {
+      add_rigid_tets(scene, posed, plane);
+      add_fractions(scene, posed, options);
+    }
   }
   if (!tissue || options.cut_tets) return;
   for (const ShownMuscle& shown : shown_muscles(*posed.head, options)) {

@@ -35,10 +35,15 @@ std::vector<LegendEntry> head_legend(const HeadTemplate& head, const HeadViewOpt
                                                                  {"insertion", detail::insertion_colour()}};
       break;
     case HeadStyle::cutaway:
-      legend = {{"skin", tissue_colour::skin},     {"fat and other flesh", tissue_colour::flesh},
-                {"skull", tissue_colour::skull},   {"mandible", tissue_colour::mandible},
-                {"teeth", tissue_colour::tooth},   {"gums", tissue_colour::gum},
-                {"tongue", tissue_colour::tongue}, {"eyes", tissue_colour::eye}};
+      legend = {{"skin", tissue_colour::skin},
+                {"fat and other flesh", tissue_colour::flesh},
+                {"skull", tissue_colour::skull},
+                {"mandible", tissue_colour::mandible},
+                {"rigid: inside of bones", tissue_colour::cavity},
+                {"teeth", tissue_colour::tooth},
+                {"gums", tissue_colour::gum},
+                {"tongue", tissue_colour::tongue},
+                {"eyes", tissue_colour::eye}};
       if (options.muscle_colours)
         for (const LegendEntry& entry : muscle_legend(head, options)) legend.push_back(entry);
       else

@@ -117,6 +117,17 @@ Camera head_camera(const HeadTemplate& head, View view, int width, int height) {
   return frame_view(view, head.skin.V, face_points(head), width, height);
 }
 
+bool without_skin(const HeadViewOptions& options) {
+  const HeadStyle s = options.style;
+  return s == HeadStyle::bones || (!options.peel && (s == HeadStyle::muscles || s == HeadStyle::attachments));
+}
+
+Camera head_camera(const HeadTemplate& head, const HeadViewOptions& options, View view, int width, int height) {
+  if (!without_skin(options)) return head_camera(head, view, width, height);
+  const MatrixX3d points = world_points(head_scene(head, options));
+  return frame_view(view, points.rows() > 0 ? points : head.skin.V, face_points(head), width, height);
+}
+
 bool is_close_up(View view) {
   switch (view) {
     case View::face:

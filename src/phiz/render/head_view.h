@@ -67,6 +67,12 @@ std::vector<LegendEntry> head_legend(const HeadTemplate& head, const HeadViewOpt
 FacePoints face_points(const HeadTemplate& head);
 FacePoints face_points(const Take& take);
 
+/// True where nothing of the skin is drawn.
+bool without_skin(const HeadViewOptions& options);
+
+/// The camera for a view of what the options show of the head at rest: without skin, the parts and the muscles.
+Camera head_camera(const HeadTemplate& head, const HeadViewOptions& options, View view, int width, int height);
+
 /// The camera for a view of the head at rest, or of the frames of a take: whole-head views leave room for their motion.
 Camera head_camera(const HeadTemplate& head, View view, int width, int height);
 Camera take_camera(const Take& take, View view, int width, int height);

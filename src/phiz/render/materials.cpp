@@ -58,6 +58,15 @@ Material bone_material() {
   return m;
 }
 
+Material section_material() {
+  Material m;
+  m.albedo = Vector3d::Ones();
+  m.roughness = 0.7;
+  m.specular = 0.02;
+  m.unlit = 0.65;
+  return m;
+}
+
 Material muscle_material() {
   Material m;
   m.albedo = Vector3d::Ones();

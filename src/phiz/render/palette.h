@@ -29,6 +29,7 @@ inline const Vector3d muscle{0.46, 0.085, 0.065};
 inline const Vector3d tendon{0.72, 0.56, 0.42};
 inline const Vector3d skull{0.78, 0.70, 0.55};
 inline const Vector3d mandible{0.70, 0.68, 0.52};
+inline const Vector3d cavity{0.50, 0.46, 0.45};  ///< rigid, where the bone as drawn is hollow
 inline const Vector3d tooth{0.92, 0.90, 0.84};
 inline const Vector3d gum{0.62, 0.20, 0.20};
 inline const Vector3d tongue{0.56, 0.17, 0.18};
