@@ -29,7 +29,12 @@ Surface cross_section(const TetMesh& mesh, const CutPlane& plane, const std::map
 Surface cross_section(const TetMesh& mesh, const CutPlane& plane, const MatrixX3d& tet_colours, bool cells = false);
 
 /// The cut of a closed surface as a flat surface in the plane, facing the removed side: what lies inside an odd number
-/// of shells. `mesh` is in its own frame; the result has the same transform and material as `surface`.
+/// of shells. `mesh` is in its own frame; the result has the same transform and material as `surface`. Where the
+/// surface is open, a straight line closes its section.
 Surface cap(const Surface& surface, const CutPlane& plane);
+
+/// The cut of solids that may overlap, such as the strands of a muscle: what lies inside any of them. A connected part
+/// of the surface that faces outward is a solid; one that faces inward is a hollow of the solids whose bounds hold it.
+Surface solid_cap(const Surface& surface, const CutPlane& plane);
 
 }  // namespace phiz

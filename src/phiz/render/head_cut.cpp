@@ -15,8 +15,8 @@ namespace phiz::detail {
 namespace {
 
 // Sections lie a hair in front of each other, so that the right one wins where two show.
-constexpr double rigid_lift = 0.5e-5, fraction_lift = 1e-5, muscle_lift = 2e-5, bone_lift = 3e-5, soft_lift = 5e-5,
-                 tooth_lift = 8e-5;
+constexpr double rigid_lift = 0.5e-5, fraction_lift = 1e-5, muscle_lift = 2e-5, next_muscle = 2e-7, bone_lift = 5e-5,
+                 soft_lift = 6e-5, tooth_lift = 8e-5;
 
 /// A flat surface in the cut with its tissue's plain colour, moved towards the viewer by `lift`.
 Surface flat_section(Surface section, const Vector3d& colour, const CutPlane& plane, double lift) {
@@ -111,7 +111,7 @@ void add_fractions(Scene& scene, const PosedHead& posed, const HeadViewOptions& 
 }
 
 void add_section(Scene& scene, const Surface& closed, const Vector3d& colour, const CutPlane& plane, double lift) {
-  Surface section = cap(closed, plane);
+  Surface section = solid_cap(closed, plane);
   if (section.mesh.F.rows() > 0) scene.surfaces.push_back(flat_section(std::move(section), colour, plane, lift));
 }
 
@@ -138,7 +138,8 @@ void add_soft_sections(Scene& scene, const PosedHead& posed, const HeadViewOptio
   if (!tissue || options.cut_tets) return;
   for (const ShownMuscle& shown : shown_muscles(*posed.head, options)) {
     if (posed.head->muscles[shown.row].surface.F.rows() == 0) continue;
-    add_section(scene, muscle_belly(posed, shown, options), colour_of(shown, options), plane, muscle_lift);
+    add_section(scene, muscle_belly(posed, shown, options), colour_of(shown, options), plane,
+                muscle_lift + next_muscle * shown.row);
   }
 }
 

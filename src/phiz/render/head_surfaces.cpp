@@ -6,9 +6,11 @@
 #include <utility>
 
 #include "phiz/core/error.h"
+#include "phiz/geometry/surface.h"
 #include "phiz/render/head_paint.h"
 #include "phiz/render/materials.h"
 #include "phiz/render/muscle_surfaces.h"
+#include "phiz/render/palette.h"
 
 namespace phiz::detail {
 
@@ -133,6 +135,30 @@ Surface veil(Surface skin, double opacity) {
   return skin;
 }
 
+/// The kept part of the skin with its thickness at the rim and what lies under it on the inside.
+void add_peeled_skin(Scene& scene, const Surface& skin, const CutPlane& plane) {
+  constexpr double thickness = 0.0018;  // metres
+  Surface inside;
+  inside.name = "under the skin";
+  inside.mesh = skin.mesh;
+  inside.mesh.V -= thickness * vertex_normals(skin.mesh.V, skin.mesh.F);
+  inside.mesh.F.col(1).swap(inside.mesh.F.col(2));
+  inside.material = section_material();
+  inside.material.albedo = tissue_colour::flesh;
+  inside.material.unlit = 0;
+  Surface rim = skin;
+  const Eigen::Index n = skin.mesh.V.rows(), faces = skin.mesh.F.rows();
+  rim.mesh.V.conservativeResize(2 * n, 3);
+  rim.mesh.V.bottomRows(n) = inside.mesh.V;
+  rim.mesh.F.conservativeResize(2 * faces, 3);
+  rim.mesh.F.bottomRows(faces) = (inside.mesh.F.array() + static_cast<int>(n)).matrix();
+  rim = cap(rim, plane);
+  rim.material = section_material();
+  rim.material.albedo = tissue_colour::skin;
+  for (const Surface& s : {cut_surface(skin, plane), cut_surface(inside, plane), rim})
+    if (s.mesh.F.rows() > 0) scene.surfaces.push_back(s);
+}
+
 const HeadTemplate& anatomy_of(const PosedHead& posed) {
   if (posed.head == nullptr)
     throw Error(ErrorKind::usage,
@@ -156,7 +182,7 @@ Scene build_scene(const PosedHead& posed, const HeadViewOptions& options) {
   if (layers || maps) anatomy_of(posed);
 
   const Surface skin = skin_surface(posed, options);
-  if (layers && options.peel) scene.surfaces.push_back(cut_surface(skin, *options.peel));
+  if (layers && options.peel) add_peeled_skin(scene, skin, *options.peel);
   if (style == HeadStyle::anatomy || (style == HeadStyle::fibres && !options.peel))
     scene.surfaces.push_back(veil(skin, style == HeadStyle::fibres ? 0.09 : 0.16));
   if (!inside && !maps) scene.surfaces.push_back(skin);

@@ -37,7 +37,7 @@ Vector3d category_colour(int i) {
 }
 
 Vector3d muscle_colour(int i) {
-  const double t = fraction(golden * i), hue = (18 + 16 * fraction(golden * golden * i + 0.3)) * M_PI / 180;
+  const double t = fraction(golden * i), hue = (21 + 15 * fraction(golden * golden * i + 0.3)) * M_PI / 180;
   return linear_rgb(from_hue(0.455 + 0.085 * t, 0.125 + 0.015 * t, hue));
 }
 
