@@ -32,7 +32,7 @@ namespace {
 
 struct RenderArguments {
   SubjectOptions subject;
-  std::string output, style = "clay", frames, size, cut, range, quality = "normal";
+  std::string output, style = "clay", frames, size, cut, peel, range, quality = "normal";
   std::vector<std::string> views, expressions;
   int frame = -1;
   double fps = 0;
@@ -52,14 +52,14 @@ Extent extent_of(const std::string& size, int otherwise) {
 }
 
 /// "x=4": the part with x above 4 mm is taken away; "-x=4": the part below.
-CutPlane cut_plane(const std::string& text) {
+CutPlane cut_plane(const std::string& option, const std::string& text) {
   const std::size_t at = text.find('=');
   const std::string axis = text.substr(0, at);
   const auto offset = at == std::string::npos ? std::nullopt : parse_number(text.substr(at + 1));
   const bool turned = !axis.empty() && axis[0] == '-';
   const std::string letter = turned ? axis.substr(1) : axis;
   if (!offset || !std::isfinite(*offset) || (letter != "x" && letter != "y" && letter != "z"))
-    misuse("--cut '" + text + "' is not of the form AXIS=MILLIMETRES, e.g. x=4 or -y=-30");
+    misuse(option + " '" + text + "' is not of the form AXIS=MILLIMETRES, e.g. x=4 or -y=-30");
   CutPlane plane;
   plane.normal = Vector3d::Unit(letter[0] - 'x') * (turned ? -1 : 1);
   plane.point = Vector3d::Unit(letter[0] - 'x') * (*offset / 1000);
@@ -103,11 +103,18 @@ FrameRange frames_of(const RenderArguments& a, const Subject& subject) {
   return frames;
 }
 
+/// With the bar of a heat map.
 Image picture(const Subject& subject, int frame, View view, Extent extent, const RenderOptions& options) {
   Image image =
       render(subject.scene(frame, is_close_up(view)), subject.camera(view, extent.width, extent.height), options);
   if (subject.has_legend) draw_legend(image, subject.scale);
   return image;
+}
+
+/// With names beside it, inside of the extent.
+Image picture_with_names(const Subject& subject, int frame, View view, Extent extent, const RenderOptions& options) {
+  extent.width = std::max(extent.width - legend_width(subject.names, extent.height), extent.width / 2);
+  return with_legend(picture(subject, frame, view, extent, options), subject.names);
 }
 
 std::string frame_caption(const Subject& subject, int frame) {
@@ -157,7 +164,7 @@ Image make_sheet(const RenderArguments& a, const Subject& subject, std::vector<V
   }
   if (cells.empty()) fail("interrupted before the first picture");
   const std::string what = a.subject.view.style == HeadStyle::heat ? subject.scale.quantity : a.style;
-  return contact_sheet(cells, {.title = subject.name + " - " + what});
+  return with_legend(contact_sheet(cells, {.title = subject.name + " - " + what}), subject.names);
 }
 
 /// Frames of a take at the film's rate, or a turn of what does not move. Returns the number of frames.
@@ -199,7 +206,8 @@ void run_render(RenderArguments a) {
   if (film && (a.sheet || a.all_expressions)) misuse("a sheet is a picture; give an output that ends in .png");
   if (!a.subject.quantity.empty() || !a.subject.values.empty()) a.style = "heat";
   a.subject.view.style = head_style(a.style);
-  if (!a.cut.empty()) a.subject.view.plane = cut_plane(a.cut);
+  if (!a.cut.empty()) a.subject.view.plane = cut_plane("--cut", a.cut);
+  if (!a.peel.empty()) a.subject.view.peel = cut_plane("--peel", a.peel);
   if (!a.range.empty()) {
     std::tie(a.subject.low, a.subject.high) = two_numbers(a.range, ':', "--range", "LOW:HIGH");
     if (!(a.subject.low < a.subject.high)) misuse("--range must go from a lower to a higher number");
@@ -226,8 +234,8 @@ void run_render(RenderArguments a) {
     write_png(a.output, make_sheet(a, subject, views));
   } else {
     const FrameRange range = frames_of(a, subject);
-    write_png(a.output, picture(subject, a.frame >= 0 ? a.frame : range.first, first, extent_of(a.size, 800),
-                                rays(a.quality, false)));
+    write_png(a.output, picture_with_names(subject, a.frame >= 0 ? a.frame : range.first, first, extent_of(a.size, 800),
+                                           rays(a.quality, false)));
   }
   if (interrupted()) fail("stopped; what is finished is kept in " + a.output);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -256,7 +264,8 @@ void add_render(CLI::App& app) {
   verb->add_option("-o,--output", a->output, "Picture (.png) or film (.mp4; what does not move is turned round)")
       ->required();
   verb->add_option("--view", a->views, "View or views: " + views)->delimiter(',');
-  verb->add_option("--style", a->style, "clay, skin, wireframe, anatomy, bones, cutaway or heat")
+  verb->add_option("--style", a->style,
+                   "clay, skin, wireframe, anatomy, bones, cutaway, muscles, fibres, attachments, contacts or heat")
       ->capture_default_str();
   verb->add_option("--frame", a->frame, "Frame of a take")->check(between(0, 1e6));
   verb->add_option("--frames", a->frames, "Frames FIRST to END - 1 of a take")->type_name("FIRST:END");
@@ -271,7 +280,13 @@ void add_render(CLI::App& app) {
   verb->add_option("--range", a->range, "Ends of the heat map's scale")->type_name("LOW:HIGH");
   verb->add_option("--cut", a->cut, "Plane of a cut-away in the head frame, e.g. x=4 (millimetres) or -z=20")
       ->type_name("AXIS=MM");
-  verb->add_flag("--tets", a->subject.view.cut_tets, "Outline the tets in a cut-away");
+  verb->add_flag("--tets", a->subject.view.cut_tets, "Show the tets in a cut-away and the share that muscles fill");
+  verb->add_option("--peel", a->peel, "Show muscles, fibres or attachments with skin on the side that this plane keeps")
+      ->type_name("AXIS=MM");
+  verb->add_option("--muscle", a->subject.view.muscles, "Show these muscles only; without Left or Right: both sides")
+      ->delimiter(',')
+      ->type_name("NAME");
+  verb->add_flag("--muscle-colours", a->subject.view.muscle_colours, "A colour per muscle, with their names");
   verb->add_option("--expression", a->expressions, "Expressions that a head shows")->type_name("NAME=WEIGHT");
   verb->add_flag("--all-expressions", a->all_expressions, "A sheet of all expressions of a head");
   verb->add_option("--fps", a->fps, "Frames per second of a film; the take's own without")->check(between(1, 240));
@@ -283,6 +298,7 @@ void add_render(CLI::App& app) {
       "Examples:\n"
       "  phiz render head.phiz -o head.png --style skin --view three-quarter --size 1024x1024\n"
       "  phiz render head.phiz -o cut.png --style cutaway --cut x=4 --view side\n"
+      "  phiz render head.phiz -o muscles.png --style muscles --peel x=0 --view front --muscle-colours\n"
       "  phiz render take.phiz -o film.mp4 --view front --size 640x640\n"
       "  phiz render take.phiz -o heat.png --sheet --quantity displacement");
   verb->callback([a] { run_render(*a); });

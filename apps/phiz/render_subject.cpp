@@ -19,6 +19,7 @@
 #include "phiz/io/text_scanner.h"
 #include "phiz/render/head_quantities.h"
 #include "phiz/render/materials.h"
+#include "phiz/render/palette.h"
 
 namespace phiz {
 
@@ -101,8 +102,8 @@ Subject open_mesh(const SubjectOptions& options) {
     if (style == HeadStyle::cutaway) {
       scene.surfaces.push_back(cut_surface(*base, plane));
       Surface face_of_cut = cap(*base, plane);
-      face_of_cut.material.albedo = {0.60, 0.22, 0.18};
-      face_of_cut.material.unlit = 0.35;
+      face_of_cut.material = section_material();
+      face_of_cut.material.albedo = tissue_colour::flesh;
       if (face_of_cut.mesh.F.rows() > 0) scene.surfaces.push_back(std::move(face_of_cut));
     } else {
       scene.surfaces.push_back(*base);
@@ -132,10 +133,11 @@ Subject open_head(const SubjectOptions& options, const std::shared_ptr<const Hea
     subject.scale = view->scale;
     subject.has_legend = true;
   }
+  subject.names = head_legend(*head, *view);
   for (const Expression& e : head->expressions) subject.expressions.push_back(e.name);
   subject.points = head->skin.V;
   subject.scene = [head, view](int, bool) { return head_scene(*head, *view); };
-  subject.camera = [head](View v, int width, int height) { return head_camera(*head, v, width, height); };
+  subject.camera = [head, view](View v, int width, int height) { return head_camera(*head, *view, v, width, height); };
   subject.express = [view](const std::map<std::string, double>& weights) { view->expressions = weights; };
   return subject;
 }
@@ -160,6 +162,7 @@ Subject open_take(const SubjectOptions& options) {
                                               : load_head_template(options.model));
   Subject subject;
   subject.name = reader->head().model;
+  if (head != nullptr) subject.names = head_legend(*head, options.view);
   subject.frames = reader->frames();
   subject.frame_rate = reader->head().frame_rate;
   subject.points = reader->head().skin.V;

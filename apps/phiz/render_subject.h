@@ -31,6 +31,7 @@ struct Subject {
   std::function<Camera(View view, int width, int height)> camera;
   HeatScale scale;  ///< of heat maps
   bool has_legend = false;
+  std::vector<LegendEntry> names;  ///< what the colours of a head's anatomy mean; may be empty
   MatrixX3d points;  ///< what whole views frame
   /// Shows these expressions from now on (heads only).
   std::function<void(const std::map<std::string, double>&)> express;

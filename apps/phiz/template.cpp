@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// phiz template builtin: makes a head from parameters.
+// phiz template builtin: makes a head from parameters. Its other verb: template_check.cpp.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -56,7 +56,7 @@ void make_builtin(const BuiltinArguments& arguments) {
 }  // namespace
 
 void add_template(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("template", "Make a head template");
+  CLI::App* verb = app.add_subcommand("template", "Make or check a head template");
   verb->require_subcommand(1);
   add_template_build(*verb);
   CLI::App* builtin = verb->add_subcommand("builtin", "Make the built-in head, or a random person of its kind");
@@ -73,6 +73,7 @@ void add_template(CLI::App& app) {
   add_report(*builtin, arguments->report);
   builtin->footer("Example:\n  phiz template builtin --size standard --person 7 -o head.phiz");
   builtin->callback([arguments] { make_builtin(*arguments); });
+  add_template_check(*verb);
 }
 
 }  // namespace phiz

@@ -6,34 +6,19 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <numeric>
 #include <vector>
+
+#include "phiz/core/nearest_words.h"
 
 namespace phiz {
 
 namespace {
 
-/// Letters to insert, delete, replace or swap with a neighbour that lead from a to b.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
-  std::iota(d[0].begin(), d[0].end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i)
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
-    }
-  return d[a.size()][b.size()];
-}
-
 /// "; did you mean 'x'?" for the candidate that is at most two edits away, or nothing.
 std::string suggestion(const std::string& word, const std::vector<std::string>& candidates) {
-  const auto distance = [&word](const std::string& candidate) { return edit_distance(word, candidate); };
-  const auto best = std::min_element(candidates.begin(), candidates.end(),
-                                     [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
-  if (best == candidates.end() || distance(*best) > 2) return {};
-  return fmt::format("; did you mean '{}'?", *best);
+  const std::vector<std::string> best = nearest_words(word, candidates, 1);
+  if (best.empty() || edit_distance(word, best.front()) > 2) return {};
+  return fmt::format("; did you mean '{}'?", best.front());
 }
 
 std::vector<std::string> verbs_of(const CLI::App& app) {

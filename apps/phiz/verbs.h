@@ -10,7 +10,9 @@ class App;
 namespace phiz {
 
 void add_template(CLI::App& app);
-void add_template_build(CLI::App& verb);  ///< part of add_template
+/// Parts of `template`: add its verbs `build` and `check`.
+void add_template_build(CLI::App& verb);
+void add_template_check(CLI::App& verb);
 void add_animate(CLI::App& app);
 void add_export(CLI::App& app);
 void add_inspect(CLI::App& app);

@@ -1,17 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <iterator>
+#include <memory>
 #include <set>
+#include <sstream>
 
 #include "phiz/anatomy/builtin/builtin_head.h"
+#include "phiz/anatomy/builtin/expressions/recipes.h"
 #include "phiz/anatomy/builtin/muscles.h"
+#include "phiz/anatomy/fibres.h"
+#include "phiz/anatomy/muscle_table.h"
+#include "phiz/anatomy/sides.h"
 #include "phiz/geometry/operators.h"
+#include "phiz/geometry/validate.h"
 
 namespace phiz {
 namespace {
 
 TEST(Muscles, AreThirtyThreeOfExpressionAndTheTwoClosers) {
-  const std::vector<MuscleBundle> muscles = make_muscles(Proportions{});
+  const std::vector<MuscleBundle> muscles = make_muscle_bundles(Proportions{});
   std::set<std::string> names;
   for (const MuscleBundle& m : muscles) {
     names.insert(m.name);
@@ -28,7 +37,7 @@ TEST(Muscles, AreThirtyThreeOfExpressionAndTheTwoClosers) {
 }
 
 TEST(Muscles, AreMirrorImages) {
-  const std::vector<MuscleBundle> muscles = make_muscles(Proportions{});
+  const std::vector<MuscleBundle> muscles = make_muscle_bundles(Proportions{});
   for (std::size_t i = 0; i + 1 < muscles.size(); ++i) {
     if (!muscles[i].name.ends_with("Left")) continue;
     const MuscleBundle &left = muscles[i], &right = muscles[i + 1];
@@ -38,17 +47,29 @@ TEST(Muscles, AreMirrorImages) {
   }
 }
 
-TEST(Muscles, FillAShareOfTheFleshWithUnitFibres) {
-  BuiltinOptions options;
-  options.size = HeadSize::preview;
-  options.expressions = false;
-  const HeadTemplate head = build_builtin_head(options);
-  const VectorXd volume = tet_volumes(head.volume.V, head.volume.T);
+class MusclesInAHead : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    BuiltinOptions options;
+    options.size = HeadSize::preview;
+    options.expressions = false;
+    head_ = std::make_unique<HeadTemplate>(build_builtin_head(options));
+  }
+  static void TearDownTestSuite() { head_.reset(); }
+  static const HeadTemplate& head() { return *head_; }
+
+ private:
+  static std::unique_ptr<HeadTemplate> head_;
+};
+std::unique_ptr<HeadTemplate> MusclesInAHead::head_;
+
+TEST_F(MusclesInAHead, FillAShareOfTheFleshWithUnitFibres) {
+  const VectorXd volume = tet_volumes(head().volume.V, head().volume.T);
   VectorXd filled = VectorXd::Zero(volume.size());
-  for (const Muscle& m : head.muscles) {
+  for (const Muscle& m : head().muscles) {
     EXPECT_GT(m.tets.size(), 0) << m.name;
     for (Eigen::Index i = 0; i < m.tets.size(); ++i) {
-      EXPECT_EQ(head.volume.region[m.tets[i]], Tissue::flesh);
+      EXPECT_EQ(head().volume.region[m.tets[i]], Tissue::flesh);
       EXPECT_GT(m.fraction[i], 0);
       EXPECT_NEAR(m.direction.row(i).norm(), 1, 1e-9);
       filled[m.tets[i]] += m.fraction[i];
@@ -56,6 +77,41 @@ TEST(Muscles, FillAShareOfTheFleshWithUnitFibres) {
   }
   EXPECT_LE(filled.maxCoeff(), 1 + 1e-9);
   EXPECT_GT(filled.dot(volume), 20e-6);  // cubic metres: the muscles of a face weigh tens of grams
+  EXPECT_NEAR(active_share(head()), 0.07, 0.02);
+}
+
+TEST_F(MusclesInAHead, AreClosedSurfacesInsideTheFlesh) {
+  for (const Muscle& m : head().muscles) {
+    require_closed_manifold(m.surface, m.name);
+    EXPECT_GE(share_in_flesh(head().volume, m.surface), 0.95) << m.name;
+    const MuscleFacts* facts = find_muscle_facts(m.name);
+    ASSERT_NE(facts, nullptr) << m.name;
+    EXPECT_EQ(m.ring, facts->form == MuscleForm::ring) << m.name;
+    EXPECT_GE(m.fibres.size(), 8U) << m.name;
+  }
+}
+
+TEST_F(MusclesInAHead, AreThoseOfTheTable) {
+  std::set<std::string> names;
+  for (const Muscle& m : head().muscles) names.insert(m.name);
+  const std::vector<std::string> wanted = expression_muscle_names();
+  EXPECT_EQ(wanted.size(), 33U);
+  for (const std::string& name : wanted) EXPECT_TRUE(names.contains(name)) << name;
+}
+
+TEST(MuscleTable, KnowsEveryMuscleThatAnExpressionShortens) {
+  for (const ExpressionRecipe& recipe : expression_recipes())
+    for (const MusclePull& pull : recipe.pulls) {
+      const MuscleFacts* facts = find_muscle_facts(pull.muscle);
+      const std::string full = std::string(pull.muscle) + "Left";
+      if (facts == nullptr) facts = find_muscle_facts(full);
+      ASSERT_NE(facts, nullptr) << pull.muscle;
+      std::istringstream shapes{std::string(facts->shapes)};
+      const bool listed = std::any_of(std::istream_iterator<std::string>(shapes), {}, [&](const std::string& shape) {
+        return shape == recipe.name || (recipe.paired && shape == without_side(recipe.name));
+      });
+      EXPECT_TRUE(listed) << facts->stem << " should list " << recipe.name;
+    }
 }
 
 }  // namespace

@@ -76,5 +76,32 @@ TEST(Cut, CapOfNestedShellsIsARing) {
   EXPECT_EQ(cap(block, {{0, 0, 100}, {0, 0, 1}}).mesh.F.rows(), 0);
 }
 
+TEST(Cut, CapOfAnOpenSurfaceIsClosedByAStraightLine) {
+  Surface bowl = test::surface_of(test::box({0, 0, 0}, {2, 1, 1}));
+  bowl.mesh.F = MatrixX3i(bowl.mesh.F.topRows(10));  // without the side x = 2 or another one
+  EXPECT_NEAR(area(cap(bowl, {{1, 0.5, 0.5}, {0, 0, 1}}).mesh), 2, 1e-9);
+}
+
+/// Two boxes as one mesh; the second may be turned inside out.
+Surface two_boxes(const TriangleMesh& first, const TriangleMesh& second, bool inside_out) {
+  TriangleMesh both;
+  both.V.resize(16, 3);
+  both.V << first.V, second.V;
+  both.F.resize(24, 3);
+  both.F << first.F, (second.F.array() + 8).matrix();
+  if (inside_out) both.F.bottomRows(12).col(1).swap(both.F.bottomRows(12).col(2));
+  return test::surface_of(both);
+}
+
+TEST(Cut, OverlappingSolidsAreCutAsTheirUnionAndHollowsStayOpen) {
+  const TriangleMesh large = test::box({0, 0, 0}, {3, 3, 3}), beside = test::box({2, 1, 0}, {5, 2, 3}),
+                     within = test::box({1, 1, 1}, {2, 2, 2});
+  const CutPlane plane{{0, 0, 1.5}, {0, 0, 1}};
+  EXPECT_NEAR(area(cap(two_boxes(large, beside, false), plane).mesh), 9 + 3 - 2, 1e-9);
+  const Surface solids = solid_cap(two_boxes(large, beside, false), plane);
+  EXPECT_NEAR(area(solids.mesh), 9 + 3, 1e-9);  // the overlap twice
+  EXPECT_NEAR(area(solid_cap(two_boxes(large, within, true), plane).mesh), 8, 1e-9);
+}
+
 }  // namespace
 }  // namespace phiz

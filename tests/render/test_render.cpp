@@ -171,6 +171,44 @@ TEST(Render, AmbientLightIsHalvedInACorner) {
   EXPECT_LT(corner, 0.75 * open);
 }
 
+/// A square before the camera, seen without light and shade.
+Surface plain_square(double left, double right, const Vector3d& colour) {
+  Surface s = test::surface_of(test::box({left, -1, -0.01}, {right, 1, 0}));
+  s.material.albedo = colour;
+  s.material.unlit = 1;
+  return s;
+}
+
+TEST(Render, StreaksRunAlongTheFibres) {
+  Scene scene;
+  scene.surfaces = {plain_square(-1, 1, {0.4, 0.4, 0.4})};
+  Surface& s = scene.surfaces[0];
+  s.material.striation = 1;
+  s.fibre = Eigen::RowVector3d::UnitY().replicate(s.mesh.V.rows(), 1);
+  const Image image = render(scene, looking_down_z(0.2, 64));
+  double along = 0, across = 0;
+  for (int y = 8; y < 56; ++y) {
+    for (int x = 8; x < 56; ++x) {
+      along += std::abs(*image.at(x, y) - *image.at(x, y + 1));
+      across += std::abs(*image.at(x, y) - *image.at(x + 1, y));
+    }
+  }
+  EXPECT_GT(across, 2 * along);
+  EXPECT_GT(across, 48 * 48);
+}
+
+TEST(Render, OutlinesDarkenTheLineBetweenSurfacesOnly) {
+  Scene scene;
+  scene.surfaces = {plain_square(-1, 0, {0.4, 0.4, 0.4}), plain_square(0, 1, {0.4, 0.4, 0.4})};
+  const Camera camera = looking_down_z(0.2, 64);
+  const Image plain = render(scene, camera);
+  scene.surfaces[0].outline = 0.8;
+  const Image outlined = render(scene, camera);
+  EXPECT_LT(*outlined.at(31, 32), 0.8 * *plain.at(31, 32));
+  EXPECT_LT(*outlined.at(32, 32), 0.8 * *plain.at(32, 32));
+  EXPECT_NEAR(*outlined.at(10, 32), *plain.at(10, 32), 1);
+}
+
 TEST(Render, EmptySceneIsTheBackdrop) {
   const Image image = render(Scene(), looking_down_z(1, 16));
   EXPECT_EQ(image.pixels.size(), 16U * 16U * 3U);

@@ -26,7 +26,8 @@ struct FibreField::State {
   }
 
   // Streamlines (fibre_trace.cpp).
-  std::vector<Vector3d> seed_candidates() const;
+  /// Voxels whose value is within `band` of one half; in rings those at a half-plane through the axis.
+  std::vector<Vector3d> seed_candidates(double band) const;
   /// p, or a place inside near it when it has left through a step of the side; nothing when it has left for good.
   std::optional<Vector3d> held_inside(const Vector3d& p) const;
   /// The line from p with the flow (way = 1) or against it (-1), p first.

@@ -58,7 +58,7 @@ double angle_from(const Vector3d& p, const Vector3d& start, const Vector3d& cent
 
 }  // namespace
 
-std::vector<Vector3d> FibreField::State::seed_candidates() const {
+std::vector<Vector3d> FibreField::State::seed_candidates(double band) const {
   // Half way between the ends; in rings the half-plane where they are cut, on the side of the angle's zero.
   std::vector<Vector3d> candidates;
   Vector3d start = Vector3d::Zero();
@@ -73,7 +73,7 @@ std::vector<Vector3d> FibreField::State::seed_candidates() const {
     const Vector3d p = grid().centre(flow.voxels[r]);
     const bool middle =
         ring ? std::abs(side.dot(p - ring_centre)) < 0.75 * grid().spacing && (p - ring_centre).dot(start) > 0
-             : std::abs(flow.value[static_cast<Eigen::Index>(r)] - 0.5) < 0.1;
+             : std::abs(flow.value[static_cast<Eigen::Index>(r)] - 0.5) < band;
     if (middle) candidates.push_back(p);
   }
   return candidates;
@@ -125,8 +125,11 @@ std::vector<Vector3d> FibreField::State::walk(const FibreField& field, const Vec
 
 std::vector<MatrixX3d> FibreField::trace(int fewest, int most, int points) const {
   const State& s = *state_;
+  std::vector<Vector3d> candidates;
+  for (double band = 0.1; band < 0.6 && static_cast<int>(candidates.size()) < fewest; band += 0.1)
+    candidates = s.seed_candidates(band);
   std::vector<MatrixX3d> fibres;
-  for (const Vector3d& seed : spread_out(s.seed_candidates(), fewest, most)) {
+  for (const Vector3d& seed : spread_out(candidates, fewest, most)) {
     std::vector<Vector3d> line = s.walk(*this, seed, 1);
     if (s.ring) {
       // One round; what it misses its beginning by is spread over its length.

@@ -7,9 +7,10 @@
 #include <cmath>
 
 #include "phiz/core/parallel.h"
-#include "phiz/geometry/operators.h"
+#include "phiz/geometry/spatial_query.h"
 #include "phiz/geometry/surface.h"
 #include "phiz/geometry/topology.h"
+#include "phiz/geometry/voxels.h"
 
 namespace phiz {
 
@@ -133,6 +134,27 @@ std::vector<Muscle> make_muscles(const TetMesh& volume, std::span<const MuscleSh
       1);
   share_tets(muscles, volume.T.rows());
   return muscles;
+}
+
+double share_in_flesh(const TetMesh& volume, const TriangleMesh& surface) {
+  constexpr double spacing = 0.0007;
+  const SurfaceVoxels voxels(surface, spacing, 0);
+  std::vector<int> flesh;
+  for (int t = 0; t < volume.T.rows(); ++t)
+    if (volume.region[t] == Tissue::flesh) flesh.push_back(t);
+  const TetQuery query(volume.V, volume.T(flesh, Eigen::all));
+  std::vector<std::ptrdiff_t> inside;
+  for (std::ptrdiff_t voxel = 0; voxel < voxels.grid().count(); ++voxel)
+    if (voxels.inside()[static_cast<std::size_t>(voxel)]) inside.push_back(voxel);
+  if (inside.empty()) return 0;
+  const auto count = static_cast<std::ptrdiff_t>(inside.size());
+  const double found = parallel_sum(count, 1024, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    double sum = 0;
+    for (std::ptrdiff_t i = begin; i < end; ++i)
+      sum += query.locate(voxels.grid().centre(inside[static_cast<std::size_t>(i)])) ? 1 : 0;
+    return sum;
+  });
+  return found / static_cast<double>(count);
 }
 
 }  // namespace phiz

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double end_depth = 0.0012;      // metres: how deep the ends reach into the muscle
 constexpr double deepest_end = 0.004;     // where the muscle is thick or the points of an end are far apart
+constexpr double longest_end = 0.25;      // of the distance between origin and insertion
 constexpr double farthest_end = 0.01;     // metres: points of an end farther from the muscle do not count
 constexpr double smallest_turning = 0.3;  // of the mean flow of a closed ring: less is an open one
 constexpr int smoothing_passes = 3;       // evens out the steps of slanted sides
@@ -84,8 +85,9 @@ double depth_round(const VoxelGrid& grid, const HarmonicFlow& flow, const VoxelF
 }
 
 /// The rows round the points of an end: those nearest to each point, and what lies round these, as far as the muscle is
-/// thick there, so that the end goes across all of it.
-Rows rows_of_end(const VoxelGrid& grid, const HarmonicFlow& flow, const MatrixX3d& points) {
+/// thick there, so that the end goes across all of it;
+/// but not beyond `limit` metres.
+Rows rows_of_end(const VoxelGrid& grid, const HarmonicFlow& flow, const MatrixX3d& points, double limit) {
   VoxelFlags seeds(flow.row.size(), 0);
   const int farthest = static_cast<int>(farthest_end / grid.spacing);
   for (Eigen::Index i = 0; i < points.rows(); ++i) {
@@ -110,7 +112,8 @@ Rows rows_of_end(const VoxelGrid& grid, const HarmonicFlow& flow, const MatrixX3
   }
   const double spread = points.rows() > 1 ? std::min(half_spacing(points), deepest_end) : 0;
   const double depth = std::min(depth_round(grid, flow, seeds), deepest_end);
-  const VoxelFlags grown = dilate(grid, seeds, std::max({end_depth, 1.01 * grid.spacing, spread, depth}));
+  const double reach = std::min(limit, std::max({end_depth, spread, depth}));
+  const VoxelFlags grown = dilate(grid, seeds, std::max(reach, 1.01 * grid.spacing));
   Rows rows(flow.voxels.size());
   for (std::size_t r = 0; r < rows.size(); ++r) rows[r] = grown[static_cast<std::size_t>(flow.voxels[r])];
   return rows;
@@ -207,8 +210,9 @@ HarmonicFlow flow_between(const VoxelGrid& grid, const VoxelFlags& domain, const
                           const MatrixX3d& insertion) {
   HarmonicFlow flow = start(grid, domain);
   const std::vector<int> pieces = pieces_of_rows(grid, domain, flow);
-  const Rows first = rows_of_end(grid, flow, origin);
-  Rows last = rows_of_end(grid, flow, insertion);
+  const double limit = longest_end * (origin.colwise().mean() - insertion.colwise().mean()).norm();
+  const Rows first = rows_of_end(grid, flow, origin, limit);
+  Rows last = rows_of_end(grid, flow, insertion, limit);
   std::vector<int> ends(pieces.size() + 1, 0);  // per piece: 1 has an origin, 2 an insertion, 3 both
   for (std::size_t r = 0; r < pieces.size(); ++r) {
     if (first[r]) last[r] = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A bounding volume hierarchy over boxes, for the query classes of this folder (not a public header).
+/// A bounding volume hierarchy over boxes, for queries of nearest things (not a public header).
 #pragma once
 
 #include <Eigen/Geometry>

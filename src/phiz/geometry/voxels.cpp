@@ -3,8 +3,11 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 
 #include "phiz/core/error.h"
 #include "phiz/core/parallel.h"
@@ -41,21 +44,62 @@ void flood(const VoxelGrid& grid, std::ptrdiff_t seed, int label, std::vector<in
   }
 }
 
-/// Voxels whose cube the box of a triangle meets.
-VoxelFlags cut_voxels(const VoxelGrid& grid, const TriangleMesh& surface) {
-  VoxelFlags cut(at(grid.count()), 0);
-  for (Eigen::Index f = 0; f < surface.F.rows(); ++f) {
-    const Eigen::Matrix<double, 3, 3> corners = surface.V(surface.F.row(f), Eigen::all);
-    Eigen::Vector3i low, high;
-    for (int k = 0; k < 3; ++k) {
-      low[k] = static_cast<int>(std::floor((corners.col(k).minCoeff() - grid.low[k]) / grid.spacing - 1e-6));
-      high[k] = static_cast<int>(std::floor((corners.col(k).maxCoeff() - grid.low[k]) / grid.spacing + 1e-6));
-    }
+/// The triangles of each voxel: those whose plane meets its cube within the triangle's box, which is all that meet it
+/// and few others.
+struct CutVoxels {
+  std::vector<int> begin;      // per voxel and one more: first entry in `triangles`
+  std::vector<int> triangles;  // rows of F
+
+  bool cut(std::ptrdiff_t voxel) const { return begin[at(voxel)] < begin[at(voxel) + 1]; }
+};
+
+/// Calls visit(voxel, triangle) for every voxel that a triangle may meet.
+template <class Visit>
+void each_cut(const VoxelGrid& grid, const TriangleMesh& surface, const Visit& visit) {
+  for (int f = 0; f < surface.F.rows(); ++f) {
+    const Vector3d a = surface.V.row(surface.F(f, 0)), b = surface.V.row(surface.F(f, 1)),
+                   c = surface.V.row(surface.F(f, 2));
+    const Vector3d bottom = a.cwiseMin(b).cwiseMin(c), top = a.cwiseMax(b).cwiseMax(c);
+    const Eigen::Vector3i low = ((bottom - grid.low).array() / grid.spacing - 1e-6).floor().cast<int>();
+    const Eigen::Vector3i high = ((top - grid.low).array() / grid.spacing + 1e-6).floor().cast<int>();
+    const Vector3d normal = (b - a).cross(c - a);
+    const double reach = (0.5 + 1e-6) * grid.spacing * normal.lpNorm<1>();
     for (int z = low.z(); z <= high.z(); ++z)
       for (int y = low.y(); y <= high.y(); ++y)
-        for (int x = low.x(); x <= high.x(); ++x) cut[at(x + y * grid.stride(1) + z * grid.stride(2))] = 1;
+        for (int x = low.x(); x <= high.x(); ++x) {
+          const std::ptrdiff_t voxel = x + y * grid.stride(1) + z * grid.stride(2);
+          if (std::abs(normal.dot(grid.centre(voxel) - a)) <= reach) visit(voxel, f);
+        }
   }
+}
+
+CutVoxels cut_voxels(const VoxelGrid& grid, const TriangleMesh& surface) {
+  CutVoxels cut;
+  cut.begin.assign(at(grid.count()) + 1, 0);
+  each_cut(grid, surface, [&cut](std::ptrdiff_t voxel, int) { ++cut.begin[at(voxel) + 1]; });
+  for (std::size_t i = 1; i < cut.begin.size(); ++i) cut.begin[i] += cut.begin[i - 1];
+  cut.triangles.resize(static_cast<std::size_t>(cut.begin.back()));
+  std::vector<int> next(cut.begin.begin(), cut.begin.end() - 1);
+  each_cut(grid, surface,
+           [&](std::ptrdiff_t voxel, int f) { cut.triangles[static_cast<std::size_t>(next[at(voxel)]++)] = f; });
   return cut;
+}
+
+/// How the winding number changes from p to q through a triangle: 1 when q is behind it, -1 when p is, 0 when the way
+/// misses it; nothing when it passes so close to an edge that this is not sure.
+std::optional<int> crossing(const Vector3d& p, const Vector3d& q, const Vector3d& a, const Vector3d& b,
+                            const Vector3d& c) {
+  const Vector3d normal = (b - a).cross(c - a);
+  const double from = normal.dot(p - a), to = normal.dot(q - a);
+  const double scale = normal.norm() * ((b - a).norm() + (c - a).norm()), unsure = 1e-9 * scale;
+  if (std::abs(from) < unsure || std::abs(to) < unsure) return std::nullopt;
+  if ((from > 0) == (to > 0)) return 0;
+  const Vector3d x = p + from / (from - to) * (q - p);
+  double least = 1e300;
+  for (const auto& [u, v] : {std::pair{&a, &b}, std::pair{&b, &c}, std::pair{&c, &a}})
+    least = std::min(least, (*v - *u).cross(x - *u).dot(normal) / normal.squaredNorm());
+  if (std::abs(least) < 1e-9) return std::nullopt;
+  return least < 0 ? 0 : from > 0 ? 1 : -1;
 }
 
 }  // namespace
@@ -120,11 +164,14 @@ std::vector<int> voxel_pieces(const VoxelGrid& grid, const VoxelFlags& flags) {
 }
 
 struct SurfaceVoxels::State {
+  TriangleMesh surface;
   SurfaceQuery query;
   VoxelGrid grid;
-  VoxelFlags cut, inside;
+  CutVoxels cut;
+  VoxelFlags inside;
+  std::vector<std::int8_t> winding;  // of the centres of cut voxels, rounded, at most 100
 
-  explicit State(const TriangleMesh& surface) : query(surface) {}
+  explicit State(const TriangleMesh& mesh) : surface(mesh), query(mesh) {}
 };
 
 SurfaceVoxels::SurfaceVoxels(const TriangleMesh& surface, double spacing, double margin) {
@@ -140,11 +187,12 @@ SurfaceVoxels::SurfaceVoxels(const TriangleMesh& surface, double spacing, double
            "use a longer edge");
   s.grid.size = cells.array().ceil().cast<int>();
   s.cut = cut_voxels(s.grid, surface);
-  s.inside.assign(s.cut.size(), 0);
+  s.inside.assign(at(s.grid.count()), 0);
+  s.winding.assign(s.inside.size(), 0);
   // Between voxels that no triangle meets nothing changes from outside to inside: one question per piece of them.
-  std::vector<int> labels(s.cut.size(), -1);
+  std::vector<int> labels(s.inside.size(), -1);
   std::vector<char> piece_inside;
-  const auto whole = [&s](std::ptrdiff_t voxel) { return !s.cut[at(voxel)]; };
+  const auto whole = [&s](std::ptrdiff_t voxel) { return !s.cut.cut(voxel); };
   std::vector<std::ptrdiff_t> near;
   for (std::ptrdiff_t voxel = 0; voxel < s.grid.count(); ++voxel) {
     if (!whole(voxel)) {
@@ -159,7 +207,9 @@ SurfaceVoxels::SurfaceVoxels(const TriangleMesh& surface, double spacing, double
   }
   parallel_for(static_cast<std::ptrdiff_t>(near.size()), [&](std::ptrdiff_t i) {
     const std::ptrdiff_t voxel = near[at(i)];
-    s.inside[at(voxel)] = s.query.is_inside(s.grid.centre(voxel)) ? 1 : 0;
+    const double winding = std::clamp(s.query.winding_number(s.grid.centre(voxel)), -100.0, 100.0);
+    s.winding[at(voxel)] = static_cast<std::int8_t>(std::lround(winding));
+    s.inside[at(voxel)] = winding > 0.5 ? 1 : 0;
   });
 }
 
@@ -176,9 +226,21 @@ const VoxelFlags& SurfaceVoxels::inside() const {
 }
 
 bool SurfaceVoxels::contains(const Vector3d& p) const {
-  const std::ptrdiff_t voxel = state_->grid.holding(p);
+  const State& s = *state_;
+  const std::ptrdiff_t voxel = s.grid.holding(p);
   if (voxel < 0) return false;
-  return state_->cut[at(voxel)] ? state_->query.is_inside(p) : state_->inside[at(voxel)] != 0;
+  if (!s.cut.cut(voxel)) return s.inside[at(voxel)] != 0;
+  // The way from the centre to p stays in the voxel, so it crosses none but the voxel's triangles.
+  int winding = s.winding[at(voxel)];
+  const Vector3d centre = s.grid.centre(voxel);
+  for (int i = s.cut.begin[at(voxel)]; i < s.cut.begin[at(voxel) + 1]; ++i) {
+    const auto f = s.surface.F.row(s.cut.triangles[static_cast<std::size_t>(i)]);
+    const std::optional<int> change =
+        crossing(centre, p, s.surface.V.row(f(0)), s.surface.V.row(f(1)), s.surface.V.row(f(2)));
+    if (!change) return s.query.is_inside(p);
+    winding += *change;
+  }
+  return winding > 0;
 }
 
 }  // namespace phiz

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The cut of a closed surface: its section segments are constraints of a planar triangulation, whose faces count as
-// inside when an odd number of segments separates them from infinity.
+// inside when an odd number of segments separates them from infinity. The sections of open surfaces are closed by
+// straight segments first.
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 
 #include <deque>
 #include <map>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -52,6 +54,28 @@ void number_faces(Triangulation& triangulation) {
   }
 }
 
+/// The ends of the chains that segments between numbered points form, two and two; loops have none.
+std::vector<std::pair<int, int>> ends_of_chains(int points, const std::vector<std::pair<int, int>>& segments) {
+  std::vector<int> degree(points, 0), chain(points);
+  std::iota(chain.begin(), chain.end(), 0);
+  const auto root = [&](int i) {
+    while (chain[i] != i) i = chain[i] = chain[chain[i]];
+    return i;
+  };
+  for (const auto& [a, b] : segments) {
+    ++degree[a];
+    ++degree[b];
+    chain[root(a)] = root(b);
+  }
+  std::map<int, std::vector<int>> ends;
+  for (int i = 0; i < points; ++i)
+    if (degree[i] == 1) ends[root(i)].push_back(i);
+  std::vector<std::pair<int, int>> pairs;
+  for (const auto& [start, two] : ends)
+    if (two.size() == 2) pairs.emplace_back(two[0], two[1]);
+  return pairs;
+}
+
 }  // namespace
 
 Surface cap(const Surface& surface, const CutPlane& world_plane) {
@@ -63,19 +87,29 @@ Surface cap(const Surface& surface, const CutPlane& world_plane) {
   const MatrixX3d& V = surface.mesh.V;
   const VectorXd height = (V.rowwise() - point.transpose()) * normal;
 
-  Triangulation triangulation;
+  std::vector<Kernel::Point_2> crossing;
+  std::map<std::pair<int, int>, int> number;  // of the crossing of an edge
+  std::vector<std::pair<int, int>> segments;
   for (Eigen::Index f = 0; f < surface.mesh.F.rows(); ++f) {
-    std::vector<Kernel::Point_2> ends;
+    std::vector<int> ends;
     for (int k = 0; k < 3; ++k) {
       int a = surface.mesh.F(f, k), b = surface.mesh.F(f, (k + 1) % 3);
       if ((height[a] <= 0) == (height[b] <= 0)) continue;
       if (a > b) std::swap(a, b);  // the same point from either triangle
-      const double s = height[a] / (height[a] - height[b]);
-      const Vector3d p = (1 - s) * V.row(a).transpose() + s * V.row(b).transpose() - point;
-      ends.emplace_back(p.dot(u), p.dot(v));
+      const auto [place, fresh] = number.try_emplace({a, b}, static_cast<int>(crossing.size()));
+      if (fresh) {
+        const double s = height[a] / (height[a] - height[b]);
+        const Vector3d p = (1 - s) * V.row(a).transpose() + s * V.row(b).transpose() - point;
+        crossing.emplace_back(p.dot(u), p.dot(v));
+      }
+      ends.push_back(place->second);
     }
-    if (ends.size() == 2 && ends[0] != ends[1]) triangulation.insert_constraint(ends[0], ends[1]);
+    if (ends.size() == 2) segments.emplace_back(ends[0], ends[1]);
   }
+  for (const auto& closing : ends_of_chains(static_cast<int>(crossing.size()), segments)) segments.push_back(closing);
+  Triangulation triangulation;
+  for (const auto& [a, b] : segments)
+    if (crossing[a] != crossing[b]) triangulation.insert_constraint(crossing[a], crossing[b]);
 
   Surface result;
   result.name = surface.name + " cut";

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "phiz/core/error.h"
+#include "phiz/render/materials.h"
 
 namespace phiz {
 
@@ -100,13 +101,23 @@ Surface cut_surface(const Surface& surface, const CutPlane& world_plane) {
     for (int k = 0; k < 3; ++k) result.mesh.F(static_cast<Eigen::Index>(i), k) = triangles[i][k];
   result.normals = vertices.values(surface.normals);
   result.colour = vertices.values(surface.colour);
+  result.fibre = vertices.values(surface.fibre);
   result.rest = vertices.values(surface.rest.rows() > 0 ? surface.rest : surface.mesh.V);
   result.wireframe.edges = std::move(edges);
   return result;
 }
 
-Surface cross_section(const TetMesh& mesh, const CutPlane& asked, const std::map<int, Vector3d>& colours, bool cells,
+Surface cross_section(const TetMesh& mesh, const CutPlane& plane, const std::map<int, Vector3d>& colours, bool cells,
                       const Vector3d& other) {
+  MatrixX3d tet_colours(mesh.T.rows(), 3);
+  for (Eigen::Index t = 0; t < mesh.T.rows(); ++t) {
+    const auto colour = colours.find(mesh.region.size() == mesh.T.rows() ? mesh.region[t] : 0);
+    tet_colours.row(t) = (colour == colours.end() ? other : colour->second).transpose();
+  }
+  return cross_section(mesh, plane, tet_colours, cells);
+}
+
+Surface cross_section(const TetMesh& mesh, const CutPlane& asked, const MatrixX3d& tet_colours, bool cells) {
   const CutPlane plane = checked(asked);
   const VectorXd height = (mesh.V.rowwise() - plane.point.transpose()) * plane.normal;
   std::vector<Vector3d> points, point_colours;
@@ -138,12 +149,10 @@ Surface cross_section(const TetMesh& mesh, const CutPlane& asked, const std::map
         for (int j = 0; j < aboves; ++j) polygon[corners++] = crossing(below[i], above[j]);
     }
     const bool turned = (polygon[1] - polygon[0]).cross(polygon[2] - polygon[0]).dot(plane.normal) < 0;
-    const int tag = mesh.region.size() == mesh.T.rows() ? mesh.region[t] : 0;
-    const auto colour = colours.find(tag);
     const int first = static_cast<int>(points.size());
     for (int k = 0; k < corners; ++k) {
       points.push_back(polygon[turned ? corners - 1 - k : k]);
-      point_colours.push_back(colour == colours.end() ? other : colour->second);
+      point_colours.emplace_back(tet_colours.row(t));
     }
     triangles.push_back({first, first + 1, first + 2});
     edges.push_back(corners == 3 ? 7 : 3);
@@ -163,10 +172,7 @@ Surface cross_section(const TetMesh& mesh, const CutPlane& asked, const std::map
   section.mesh.F.resize(static_cast<Eigen::Index>(triangles.size()), 3);
   for (std::size_t i = 0; i < triangles.size(); ++i)
     for (int k = 0; k < 3; ++k) section.mesh.F(static_cast<Eigen::Index>(i), k) = triangles[i][k];
-  section.material.albedo = Vector3d::Ones();
-  section.material.roughness = 0.7;
-  section.material.specular = 0.02;
-  section.material.unlit = 0.35;
+  section.material = section_material();
   section.flat = true;
   section.wireframe.shown = cells;
   section.wireframe.width = 0.8;

@@ -15,8 +15,9 @@ struct CutPlane {
   Vector3d normal = Vector3d::UnitX();
 };
 
-/// The part of a surface that is kept. Crossing triangles are cut; normals, colours, rest positions and edge flags
-/// follow. The cut edge itself is not drawn in wireframes. Throws phiz::Error(bad_input) for a plane without direction.
+/// The part of a surface that is kept. Crossing triangles are cut; normals, colours, fibres, rest positions and
+/// edge flags follow. The cut edge itself is not drawn in wireframes. Throws phiz::Error(bad_input) for a plane without
+/// direction.
 Surface cut_surface(const Surface& surface, const CutPlane& plane);
 
 /// The cross-section of tets: a flat surface in the plane, facing the removed side, coloured by region tag. Tags that
@@ -24,8 +25,16 @@ Surface cut_surface(const Surface& surface, const CutPlane& plane);
 Surface cross_section(const TetMesh& mesh, const CutPlane& plane, const std::map<int, Vector3d>& colours,
                       bool cells = false, const Vector3d& other = Vector3d(0.4, 0.4, 0.4));
 
+/// Likewise with a colour per tet (rows of mesh.T).
+Surface cross_section(const TetMesh& mesh, const CutPlane& plane, const MatrixX3d& tet_colours, bool cells = false);
+
 /// The cut of a closed surface as a flat surface in the plane, facing the removed side: what lies inside an odd number
-/// of shells. `mesh` is in its own frame; the result has the same transform and material as `surface`.
+/// of shells. `mesh` is in its own frame; the result has the same transform and material as `surface`. Where the
+/// surface is open, a straight line closes its section.
 Surface cap(const Surface& surface, const CutPlane& plane);
+
+/// The cut of solids that may overlap, such as the strands of a muscle: what lies inside any of them. A connected part
+/// of the surface that faces outward is a solid; one that faces inward is a hollow of the solids whose bounds hold it.
+Surface solid_cap(const Surface& surface, const CutPlane& plane);
 
 }  // namespace phiz

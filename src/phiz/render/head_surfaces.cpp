@@ -1,43 +1,46 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "phiz/render/head_surfaces.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "phiz/core/error.h"
+#include "phiz/geometry/surface.h"
 #include "phiz/render/head_paint.h"
 #include "phiz/render/materials.h"
+#include "phiz/render/muscle_surfaces.h"
+#include "phiz/render/palette.h"
 
 namespace phiz::detail {
 
-namespace {
+namespace {}  // namespace
 
-bool names(const std::string& name, std::initializer_list<std::string_view> words) {
-  std::string lower = name;
+bool has_name(const Part& part, std::initializer_list<std::string_view> words) {
+  std::string lower = part.name;
   std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
   return std::any_of(words.begin(), words.end(),
                      [&](std::string_view w) { return lower.find(w) != std::string::npos; });
 }
 
 bool is_bone(const Part& part) {
-  return names(part.name, {"skull", "mandible", "bone"});
+  return has_name(part, {"skull", "mandible", "bone"});
 }
 bool is_eye(const Part& part) {
-  return part.carrier == Carrier::left_eye || part.carrier == Carrier::right_eye || names(part.name, {"eye"});
+  return part.carrier == Carrier::left_eye || part.carrier == Carrier::right_eye || has_name(part, {"eye"});
 }
+
+namespace {
 
 Material part_material(const Part& part, bool coloured) {
   if (is_eye(part)) return eye_material();
   if (!coloured) {
     Material m = clay_material();
-    if (names(part.name, {"teeth"})) m.albedo = m.albedo * 1.25;
+    if (has_name(part, {"teeth"})) m.albedo = m.albedo * 1.25;
     return m;
   }
-  if (names(part.name, {"teeth", "tooth"})) return enamel_material();
-  if (names(part.name, {"gum", "tongue", "palate"})) return gum_material();
+  if (has_name(part, {"teeth", "tooth"})) return enamel_material();
+  if (has_name(part, {"gum", "tongue", "palate"})) return gum_material();
   return bone_material();
 }
 
@@ -67,6 +70,8 @@ std::vector<std::uint8_t> quad_edges(const MatrixX3i& F) {
   return edges;
 }
 
+}  // namespace
+
 Surface part_surface(const PosedHead& posed, std::size_t i, bool coloured) {
   const Part& part = (*posed.parts)[i];
   Surface s;
@@ -87,50 +92,6 @@ Surface part_surface(const PosedHead& posed, std::size_t i, bool coloured) {
   return s;
 }
 
-/// Fibres as thin tubes.
-Surface muscle_surface(const HeadTemplate& head) {
-  constexpr int sides = 6;
-  constexpr double radius = 0.00075;
-  Surface s;
-  s.name = "muscles";
-  s.material = muscle_material();
-  std::vector<Vector3d> points;
-  std::vector<Eigen::Vector3i> triangles;
-  for (const Muscle& muscle : head.muscles) {
-    for (const MatrixX3d& fibre : muscle.fibres) {
-      if (fibre.rows() < 2) continue;
-      Vector3d normal = Vector3d::Zero();
-      const int first = static_cast<int>(points.size());
-      for (Eigen::Index i = 0; i < fibre.rows(); ++i) {
-        const Vector3d along =
-            (fibre.row(std::min(i + 1, fibre.rows() - 1)) - fibre.row(std::max<Eigen::Index>(i - 1, 0)))
-                .transpose()
-                .stableNormalized();
-        normal = normal.norm() < 0.5 ? along.unitOrthogonal()
-                                     : Vector3d((normal - along * along.dot(normal)).stableNormalized());
-        const Vector3d side = along.cross(normal);
-        for (int k = 0; k < sides; ++k) {
-          const double a = 2 * M_PI * k / sides;
-          points.emplace_back(fibre.row(i).transpose() + radius * (std::cos(a) * normal + std::sin(a) * side));
-        }
-      }
-      for (int i = 0; i + 1 < fibre.rows(); ++i) {
-        for (int k = 0; k < sides; ++k) {
-          const int a = first + i * sides + k, b = first + i * sides + (k + 1) % sides;
-          triangles.emplace_back(a, b, b + sides);
-          triangles.emplace_back(a, b + sides, a + sides);
-        }
-      }
-    }
-  }
-  s.mesh.V.resize(static_cast<Eigen::Index>(points.size()), 3);
-  for (std::size_t i = 0; i < points.size(); ++i) s.mesh.V.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
-  s.mesh.F.resize(static_cast<Eigen::Index>(triangles.size()), 3);
-  for (std::size_t i = 0; i < triangles.size(); ++i)
-    s.mesh.F.row(static_cast<Eigen::Index>(i)) = triangles[i].transpose();
-  return s;
-}
-
 Surface skin_surface(const PosedHead& posed, const HeadViewOptions& options) {
   Surface s;
   s.name = "skin";
@@ -141,6 +102,9 @@ Surface skin_surface(const PosedHead& posed, const HeadViewOptions& options) {
     case HeadStyle::skin:
     case HeadStyle::anatomy:
     case HeadStyle::cutaway:
+    case HeadStyle::muscles:
+    case HeadStyle::fibres:
+    case HeadStyle::attachments:
       s.material = skin_material();
       if (posed.head != nullptr) {
         s.colour = paint_skin(*posed.skin, posed.head->skin_regions);
@@ -158,84 +122,84 @@ Surface skin_surface(const PosedHead& posed, const HeadViewOptions& options) {
     default:
       s.material = clay_material();
   }
-  if (options.style == HeadStyle::anatomy) {
-    s.colour_at = nullptr;
-    s.material.opacity = 0.16;
-    s.material.grain = 0;
-  }
   return s;
 }
 
-Vector3d tissue_colour(int tissue) {
-  switch (tissue) {
-    case Tissue::skull:
-      return {0.78, 0.70, 0.55};
-    case Tissue::mandible:
-      return {0.62, 0.66, 0.52};
-    default:
-      return {0.60, 0.22, 0.18};
-  }
+namespace {
+
+/// Skin that all behind it shows through.
+Surface veil(Surface skin, double opacity) {
+  skin.colour_at = nullptr;
+  skin.material.opacity = opacity;
+  skin.material.grain = 0;
+  return skin;
 }
 
-/// The cap of a part lies a hair in front of the tissue's section, so that it wins where both show.
-void add_cut_part(Scene& scene, const Surface& part, const CutPlane& plane, double lift) {
-  scene.surfaces.push_back(cut_surface(part, plane));
-  Surface face = cap(part, plane);
-  if (face.mesh.F.rows() == 0) return;
-  face.transform = Eigen::Translation3d(plane.normal.normalized() * lift) * face.transform;
-  face.material.unlit = 0.35;
-  face.material.roughness = 0.7;
-  face.colour_at = nullptr;
-  scene.surfaces.push_back(std::move(face));
+/// The kept part of the skin with its thickness at the rim and what lies under it on the inside.
+void add_peeled_skin(Scene& scene, const Surface& skin, const CutPlane& plane) {
+  constexpr double thickness = 0.0018;  // metres
+  Surface inside;
+  inside.name = "under the skin";
+  inside.mesh = skin.mesh;
+  inside.mesh.V -= thickness * vertex_normals(skin.mesh.V, skin.mesh.F);
+  inside.mesh.F.col(1).swap(inside.mesh.F.col(2));
+  inside.material = section_material();
+  inside.material.albedo = tissue_colour::flesh;
+  inside.material.unlit = 0;
+  Surface rim = skin;
+  const Eigen::Index n = skin.mesh.V.rows(), faces = skin.mesh.F.rows();
+  rim.mesh.V.conservativeResize(2 * n, 3);
+  rim.mesh.V.bottomRows(n) = inside.mesh.V;
+  rim.mesh.F.conservativeResize(2 * faces, 3);
+  rim.mesh.F.bottomRows(faces) = (inside.mesh.F.array() + static_cast<int>(n)).matrix();
+  rim = cap(rim, plane);
+  rim.material = section_material();
+  rim.material.albedo = tissue_colour::skin;
+  for (const Surface& s : {cut_surface(skin, plane), cut_surface(inside, plane), rim})
+    if (s.mesh.F.rows() > 0) scene.surfaces.push_back(s);
 }
 
-void add_cutaway(Scene& scene, const PosedHead& posed, const HeadViewOptions& options) {
-  const CutPlane& plane = options.plane;
-  const Surface skin = skin_surface(posed, options);
-  scene.surfaces.push_back(cut_surface(skin, plane));
-  const bool tissue = posed.head != nullptr && posed.volume_now.rows() > 0;
-  if (tissue) {
-    TetMesh volume = posed.head->volume;
-    volume.V = posed.volume_now;
-    std::map<int, Vector3d> colours;
-    for (const int t : {Tissue::flesh, Tissue::skull, Tissue::mandible}) colours[t] = tissue_colour(t);
-    scene.surfaces.push_back(cross_section(volume, plane, colours, options.cut_tets));
-  } else {
-    Surface face = cap(skin, plane);
-    face.colour.resize(0, 3);
-    face.material.albedo = tissue_colour(Tissue::flesh);
-    face.material.grain = 0;
-    face.material.unlit = 0.35;
-    scene.surfaces.push_back(std::move(face));
-  }
-  for (std::size_t i = 0; i < posed.parts->size(); ++i) {
-    const Part& part = (*posed.parts)[i];
-    Surface s = part_surface(posed, i, true);
-    if (is_bone(part)) {
-      s.material.albedo = tissue_colour(part.carrier == Carrier::mandible ? int{Tissue::mandible} : int{Tissue::skull});
-    }
-    const double lift = is_bone(part) ? 2e-5 : names(part.name, {"teeth", "tooth"}) ? 8e-5 : 5e-5;
-    add_cut_part(scene, s, plane, lift);
-  }
+const HeadTemplate& anatomy_of(const PosedHead& posed) {
+  if (posed.head == nullptr)
+    throw Error(ErrorKind::usage,
+                "a take holds no muscles, attachments or contact regions; give its head with --model");
+  return *posed.head;
 }
 
 }  // namespace
 
 Scene build_scene(const PosedHead& posed, const HeadViewOptions& options) {
   Scene scene;
-  if (options.style == HeadStyle::cutaway) {
+  const HeadStyle style = options.style;
+  if (style == HeadStyle::cutaway) {
     add_cutaway(scene, posed, options);
     return scene;
   }
-  const bool inside = options.style == HeadStyle::anatomy || options.style == HeadStyle::bones;
-  const bool coloured = inside || options.style == HeadStyle::skin;
-  if (options.style != HeadStyle::bones) scene.surfaces.push_back(skin_surface(posed, options));
-  for (std::size_t i = 0; i < posed.parts->size(); ++i)
-    if (inside || !is_bone((*posed.parts)[i])) scene.surfaces.push_back(part_surface(posed, i, coloured));
-  if (options.style == HeadStyle::anatomy && posed.head != nullptr) {
-    Surface muscles = muscle_surface(*posed.head);
-    if (muscles.mesh.F.rows() > 0) scene.surfaces.push_back(std::move(muscles));
+  const bool layers = style == HeadStyle::muscles || style == HeadStyle::fibres || style == HeadStyle::attachments;
+  const bool maps = style == HeadStyle::attachments || style == HeadStyle::contacts;
+  const bool inside = layers || style == HeadStyle::anatomy || style == HeadStyle::bones;
+  const bool coloured = inside || style == HeadStyle::skin || style == HeadStyle::contacts;
+  if (layers || maps) anatomy_of(posed);
+
+  const Surface skin = skin_surface(posed, options);
+  if (layers && options.peel) add_peeled_skin(scene, skin, *options.peel);
+  if (style == HeadStyle::anatomy || (style == HeadStyle::fibres && !options.peel))
+    scene.surfaces.push_back(veil(skin, style == HeadStyle::fibres ? 0.09 : 0.16));
+  if (!inside && !maps) scene.surfaces.push_back(skin);
+
+  for (std::size_t i = 0; i < posed.parts->size(); ++i) {
+    const bool bone = is_bone((*posed.parts)[i]);
+    if (bone ? inside && !maps : true) scene.surfaces.push_back(part_surface(posed, i, coloured));
   }
+  if (style == HeadStyle::muscles || (style == HeadStyle::anatomy && posed.head != nullptr))
+    add_muscles(scene, posed, options);
+  if (style == HeadStyle::fibres)
+    for (const ShownMuscle& muscle : shown_muscles(*posed.head, options)) {
+      Surface tubes = fibre_tubes(posed, muscle, options, 0.0004, !options.muscle_colours);
+      if (tubes.mesh.F.rows() > 0) scene.surfaces.push_back(std::move(tubes));
+    }
+  if (style == HeadStyle::attachments) add_attachments(scene, posed);
+  if (style == HeadStyle::contacts) add_contacts(scene, posed, options);
   return scene;
 }
 

@@ -13,13 +13,17 @@ namespace phiz {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, HeadStyle>, 7> styles = {{{"clay", HeadStyle::clay},
-                                                                           {"skin", HeadStyle::skin},
-                                                                           {"wireframe", HeadStyle::wireframe},
-                                                                           {"anatomy", HeadStyle::anatomy},
-                                                                           {"bones", HeadStyle::bones},
-                                                                           {"cutaway", HeadStyle::cutaway},
-                                                                           {"heat", HeadStyle::heat}}};
+constexpr std::array<std::pair<std::string_view, HeadStyle>, 11> styles = {{{"clay", HeadStyle::clay},
+                                                                            {"skin", HeadStyle::skin},
+                                                                            {"wireframe", HeadStyle::wireframe},
+                                                                            {"anatomy", HeadStyle::anatomy},
+                                                                            {"bones", HeadStyle::bones},
+                                                                            {"cutaway", HeadStyle::cutaway},
+                                                                            {"muscles", HeadStyle::muscles},
+                                                                            {"fibres", HeadStyle::fibres},
+                                                                            {"attachments", HeadStyle::attachments},
+                                                                            {"contacts", HeadStyle::contacts},
+                                                                            {"heat", HeadStyle::heat}}};
 
 constexpr double average_eye_distance = 0.063;  // metres
 
@@ -111,6 +115,17 @@ FacePoints face_points(const HeadTemplate& head) {
 
 Camera head_camera(const HeadTemplate& head, View view, int width, int height) {
   return frame_view(view, head.skin.V, face_points(head), width, height);
+}
+
+bool without_skin(const HeadViewOptions& options) {
+  const HeadStyle s = options.style;
+  return s == HeadStyle::bones || (!options.peel && (s == HeadStyle::muscles || s == HeadStyle::attachments));
+}
+
+Camera head_camera(const HeadTemplate& head, const HeadViewOptions& options, View view, int width, int height) {
+  if (!without_skin(options)) return head_camera(head, view, width, height);
+  const MatrixX3d points = world_points(head_scene(head, options));
+  return frame_view(view, points.rows() > 0 ? points : head.skin.V, face_points(head), width, height);
 }
 
 bool is_close_up(View view) {

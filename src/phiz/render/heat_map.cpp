@@ -10,28 +10,11 @@
 #include <utility>
 
 #include "phiz/core/error.h"
-#include "phiz/render/text.h"
+#include "phiz/render/palette.h"
 
 namespace phiz {
 
 namespace {
-
-/// OKLab (Ottosson 2020): lightness, green-red, blue-yellow.
-struct Oklab {
-  double lightness, a, b;
-};
-
-Vector3d linear_rgb(const Oklab& c) {
-  const auto cube = [](double v) { return v * v * v; };
-  const double l = cube(c.lightness + 0.3963377774 * c.a + 0.2158037573 * c.b);
-  const double m = cube(c.lightness - 0.1055613458 * c.a - 0.0638541728 * c.b);
-  const double s = cube(c.lightness - 0.0894841775 * c.a - 1.2914855480 * c.b);
-  return Vector3d(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s,
-                  -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
-                  -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)
-      .cwiseMax(0)
-      .cwiseMin(1);
-}
 
 // Evenly spaced colours; the lightness is linear in the position.
 constexpr std::array<Oklab, 6> sequential_stops = {{{0.25, 0.035, -0.120},
@@ -42,10 +25,6 @@ constexpr std::array<Oklab, 6> sequential_stops = {{{0.25, 0.035, -0.120},
                                                     {0.90, -0.020, 0.165}}};
 constexpr std::array<Oklab, 5> diverging_stops = {
     {{0.40, -0.010, -0.150}, {0.67, -0.030, -0.085}, {0.94, 0.000, 0.000}, {0.67, 0.105, 0.070}, {0.40, 0.145, 0.075}}};
-
-double srgb_encoded(double v) {
-  return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-}
 
 /// 1, 2, 2.5, 5 or 10 times a power of ten, not below v.
 double round_up(double v) {
@@ -106,44 +85,6 @@ void paint_heat(Surface& surface, const VectorXd& values, const HeatScale& scale
   m.roughness = 0.6;
   m.specular = 0.02;
   m.unlit = 0.6;
-}
-
-std::vector<double> legend_ticks(double low, double high, int count) {
-  std::vector<double> ticks;
-  if (!(high > low) || !std::isfinite(high - low) || count < 1) return ticks;
-  const double raw = (high - low) / count;
-  const double power = std::pow(10.0, std::floor(std::log10(raw)));
-  const double step = raw <= 1.5 * power   ? power
-                      : raw <= 3.5 * power ? 2 * power
-                      : raw <= 7.5 * power ? 5 * power
-                                           : 10 * power;
-  const double slack = 1e-9 * (high - low);
-  for (double k = std::ceil((low - slack) / step); k * step <= high + slack; ++k) ticks.push_back(k * step + 0.0);
-  return ticks;
-}
-
-void draw_legend(Image& image, const HeatScale& scale) {
-  const double size = std::clamp(image.height / 34.0, 9.0, 26.0);
-  const int height = static_cast<int>(image.height * 0.62), width = std::max(6, static_cast<int>(size * 0.9));
-  const int top = (image.height - height) / 2 + static_cast<int>(size);
-  const int right = image.width - static_cast<int>(size * 3.6), left = right - width;
-  const Colour8 ink{238, 240, 242};
-  fill_rectangle(image, left - 1, top - 1, right + 1, top + height + 1, {20, 22, 26});
-  for (int y = 0; y < height; ++y) {
-    const Vector3d c = map_colour(scale.map, 1 - (y + 0.5) / height);
-    Colour8 colour;
-    for (int k = 0; k < 3; ++k) colour[k] = static_cast<std::uint8_t>(std::lround(255 * srgb_encoded(c[k])));
-    fill_rectangle(image, left, top + y, right, top + y + 1, colour);
-  }
-  for (const double tick : legend_ticks(scale.low, scale.high)) {
-    const double y = top + height * (scale.high - tick) / (scale.high - scale.low);
-    const int row = std::clamp(static_cast<int>(y), top, top + height - 1);
-    fill_rectangle(image, right + 1, row, right + 1 + static_cast<int>(size * 0.3), row + 1, ink);
-    draw_text(image, right + size * 0.55, y + size * 0.32, fmt::format("{:.6g}", tick), size, ink);
-  }
-  const double edge = image.width - size * 0.6;
-  draw_text(image, edge, top - size * 1.7, scale.quantity, size, ink, Align::right);
-  draw_text(image, edge, top - size * 0.65, scale.unit, size, ink, Align::right);
 }
 
 }  // namespace phiz

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Heat maps: a number per vertex as colour, with a legend.
+/// Heat maps: a number per vertex as colour. Their legend: legend.h.
 #pragma once
 
 #include <string>
-#include <vector>
 
-#include "phiz/geometry/image.h"
 #include "phiz/render/scene.h"
 
 namespace phiz {
@@ -33,11 +31,5 @@ Vector3d map_colour(ColourMap map, double t);
 /// Paints a surface with one value per vertex. The colours stay comparable with the legend's: half of the picture is
 /// unlit.
 void paint_heat(Surface& surface, const VectorXd& values, const HeatScale& scale);
-
-/// Round numbers inside [low, high], about `count` of them, ascending: multiples of 1, 2 or 5 times a power of ten.
-std::vector<double> legend_ticks(double low, double high, int count = 5);
-
-/// Draws the colour bar with ticks, quantity and unit at the right edge of the image.
-void draw_legend(Image& image, const HeatScale& scale);
 
 }  // namespace phiz

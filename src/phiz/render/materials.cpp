@@ -58,12 +58,22 @@ Material bone_material() {
   return m;
 }
 
+Material section_material() {
+  Material m;
+  m.albedo = Vector3d::Ones();
+  m.roughness = 0.7;
+  m.specular = 0.02;
+  m.unlit = 0.65;
+  return m;
+}
+
 Material muscle_material() {
   Material m;
-  m.albedo = {0.42, 0.085, 0.07};
-  m.roughness = 0.42;
+  m.albedo = Vector3d::Ones();
+  m.roughness = 0.40;
   m.specular = 0.04;
   m.scatter = {0.2, 0.05, 0.04};
+  m.striation = 1;
   return m;
 }
 

@@ -6,12 +6,13 @@
 
 namespace phiz {
 
-Material clay_material();    ///< warm grey, matt: for judging form
-Material skin_material();    ///< skin with reddish terminator and a soft gloss
-Material eye_material();     ///< wet, sharp glint
-Material enamel_material();  ///< teeth
-Material gum_material();     ///< wet mucosa: gums, tongue
-Material bone_material();    ///< dry bone
-Material muscle_material();  ///< dark red
+Material clay_material();     ///< warm grey, matt: for judging form
+Material skin_material();     ///< skin with reddish terminator and a soft gloss
+Material eye_material();      ///< wet, sharp glint
+Material enamel_material();   ///< teeth
+Material gum_material();      ///< wet mucosa: gums, tongue
+Material bone_material();     ///< dry bone
+Material section_material();  ///< cuts: matt, and nearly as unlit as a legend; white, to be coloured
+Material muscle_material();   ///< moist; white, to be coloured by Surface::colour
 
 }  // namespace phiz

@@ -59,7 +59,9 @@ TracedSurface prepare(const Surface& surface) {
   }
   s.colour.resize(surface.colour.rows());
   for (Eigen::Index i = 0; i < surface.colour.rows(); ++i) s.colour[i] = surface.colour.row(i).cast<float>();
-  if (surface.material.grain > 0 || surface.colour_at) {
+  if (surface.fibre.rows() == n && surface.material.striation > 0)
+    for (Eigen::Index i = 0; i < n; ++i) s.fibre.emplace_back(surface.fibre.row(i).cast<float>());
+  if (surface.material.grain > 0 || surface.colour_at || !s.fibre.empty()) {
     const MatrixX3d& rest = surface.rest.rows() == n ? surface.rest : surface.mesh.V;
     s.rest.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) s.rest[i] = rest.row(i).cast<float>();
@@ -69,6 +71,7 @@ TracedSurface prepare(const Surface& surface) {
   s.material = surface.material;
   s.wireframe = surface.wireframe;
   s.flat = surface.flat;
+  s.outline = static_cast<float>(surface.outline);
   return s;
 }
 
@@ -183,6 +186,7 @@ ShadedPoint RayScene::point(const Hit& hit, const Vector3f& direction) const {
   p.colour = s.colour.empty() ? Vector3f(1, 1, 1)
                               : Vector3f(w * s.colour[t[0]] + hit.u * s.colour[t[1]] + hit.v * s.colour[t[2]]);
   p.rest = s.rest.empty() ? p.position : Vector3f(w * s.rest[t[0]] + hit.u * s.rest[t[1]] + hit.v * s.rest[t[2]]);
+  if (!s.fibre.empty()) p.fibre = w * s.fibre[t[0]] + hit.u * s.fibre[t[1]] + hit.v * s.fibre[t[2]];
   if (s.colour_at) p.colour = p.colour.cwiseProduct(s.colour_at(p.rest.cast<double>()).cast<float>());
   return p;
 }

@@ -24,13 +24,14 @@ struct Hit {
 /// A surface ready to be traced and shaded.
 struct TracedSurface {
   std::vector<Eigen::Vector4f> position;  // padded to 16 bytes as Embree wants
-  std::vector<Vector3f> normal, colour, rest;
+  std::vector<Vector3f> normal, colour, rest, fibre;
   std::vector<Eigen::Matrix<unsigned, 3, 1>> triangle;
   Eigen::Matrix3f rotation = Eigen::Matrix3f::Identity();  // world from rest
   std::function<Vector3d(const Vector3d&)> colour_at;
   Material material;
   Wireframe wireframe;
   bool flat = false;
+  float outline = 0;
 };
 
 /// A point on a surface as seen along a ray.
@@ -39,6 +40,7 @@ struct ShadedPoint {
   Vector3f position, normal, face_normal;  // normals face the viewer
   Vector3f smooth_position;                // on the curved surface that the normals suggest: origin of secondary rays
   Vector3f colour, rest;
+  Vector3f fibre = Vector3f::Zero();  // in the frame of `rest`
   int triangle = -1;
   float u = 0, v = 0;
 };

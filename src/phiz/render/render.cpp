@@ -37,6 +37,7 @@ struct Frame {
   Lens lens;
   ShadingContext context;
   bool translucent = false;          // is there any surface to see through?
+  bool outlines = false;             // does any surface have an outline?
   std::vector<PixelRecord> records;  // of the first opaque surface
   std::vector<PixelRecord> veils;    // of the first surface, where that is translucent
   float depth_low = 0, depth_high = 1;
@@ -166,6 +167,26 @@ Vector3f trace(const Frame& frame, float x, float y) {
   return colour + through * backdrop(frame, y);
 }
 
+/// What is left of the light where the picture's pixel (x, y) lies on the line between two surfaces.
+float outline(const Frame& frame, int x, int y) {
+  const auto surface = [&](int i, int j) {
+    i = std::clamp(i, 0, frame.camera.width - 1);
+    j = std::clamp(j, 0, frame.camera.height - 1);
+    return frame.records[static_cast<std::size_t>(j) * frame.camera.width + i].surface;
+  };
+  const TracedSurface* here = surface(x, y);
+  float dark = 0;
+  for (int j = -1; j <= 1; ++j) {
+    for (int i = -1; i <= 1; ++i) {
+      const TracedSurface* there = surface(x + i, y + j);
+      if (there == here) continue;
+      const float strength = std::max(here != nullptr ? here->outline : 0.F, there != nullptr ? there->outline : 0.F);
+      dark += strength * (i == 0 || j == 0 ? 2.F : 1.F) / 12;
+    }
+  }
+  return 1 - std::min(2 * dark, 1.F);
+}
+
 float srgb(float linear) {
   const float v = std::clamp(linear, 0.F, 1.F);
   return v <= 0.0031308F ? 12.92F * v : 1.055F * std::pow(v, 1 / 2.4F) - 0.055F;
@@ -241,9 +262,9 @@ Image render(const Scene& scene, const Camera& camera, const RenderOptions& opti
   validate(scene);
   check(options, scene);
   const RayScene rays(scene, options.fast_build);
-  Frame frame{camera, options,      scene.surroundings,
-              rays,   Lens(camera), make_context(scene, camera, options, rays),
-              false,  {},           {}};
+  Frame frame{
+      camera, options, scene.surroundings, rays, Lens(camera), make_context(scene, camera, options, rays), false, false,
+      {},     {}};
   frame.translucent = std::any_of(rays.surfaces().begin(), rays.surfaces().end(),
                                   [](const TracedSurface& s) { return s.material.opacity < 1; });
   if (options.shading == Shading::depth) {
@@ -254,7 +275,11 @@ Image render(const Scene& scene, const Camera& camera, const RenderOptions& opti
       frame.depth_high = std::max(static_cast<float>(depths.maxCoeff()), frame.depth_low + 1e-6F);
     }
   }
-  if (options.shading == Shading::lit) record_visibility(frame);
+  if (options.shading == Shading::lit) {
+    record_visibility(frame);
+    frame.outlines = std::any_of(rays.surfaces().begin(), rays.surfaces().end(),
+                                 [](const TracedSurface& s) { return s.outline > 0; });
+  }
   Image image{camera.width, camera.height, 3, {}};
   image.pixels.resize(static_cast<std::size_t>(camera.width) * camera.height * 3);
   const std::vector<Sample2> offsets = lens_offsets(options.samples);
@@ -263,6 +288,7 @@ Image render(const Scene& scene, const Camera& camera, const RenderOptions& opti
     for (const Sample2& o : offsets)
       colour += trace(frame, static_cast<float>(x) + 0.5F + o.x, static_cast<float>(y) + 0.5F + o.y);
     colour /= static_cast<float>(options.samples);
+    if (frame.outlines) colour *= outline(frame, x, y);
     std::uint8_t* pixel = image.at(x, y);
     for (int k = 0; k < 3; ++k) pixel[k] = quantise(srgb(colour[k]), x, y, k);
   });

@@ -26,23 +26,35 @@ float hashed(int x, int y, int z) {
   return static_cast<float>(h & 0xffffffU) / 16777216.F - 0.5F;
 }
 
-/// Gradient of smooth value noise on the unit lattice.
-Eigen::Vector3f noise_gradient(const Eigen::Vector3f& p) {
+/// Smooth value noise on the unit lattice, -0.5 to 0.5, and its gradient.
+struct Noise {
+  float value = 0;
+  Eigen::Vector3f gradient = Eigen::Vector3f::Zero();
+};
+
+Noise noise_at(const Eigen::Vector3f& p) {
   const int x = static_cast<int>(std::floor(p.x())), y = static_cast<int>(std::floor(p.y())),
             z = static_cast<int>(std::floor(p.z()));
   const Eigen::Vector3f f(p.x() - static_cast<float>(x), p.y() - static_cast<float>(y), p.z() - static_cast<float>(z));
   const Eigen::Vector3f s = (f.array() * f.array() * (3 - 2 * f.array())).matrix();
   const Eigen::Vector3f ds = (6 * f.array() * (1 - f.array())).matrix();
-  Eigen::Vector3f g = Eigen::Vector3f::Zero();
+  Noise noise;
+  Eigen::Vector3f& g = noise.gradient;
   for (int corner = 0; corner < 8; ++corner) {
     const int dx = corner & 1, dy = (corner >> 1) & 1, dz = corner >> 2;
     const float value = hashed(x + dx, y + dy, z + dz);
     const float wx = dx != 0 ? s.x() : 1 - s.x(), wy = dy != 0 ? s.y() : 1 - s.y(), wz = dz != 0 ? s.z() : 1 - s.z();
+    noise.value += value * wx * wy * wz;
     g.x() += value * (dx != 0 ? ds.x() : -ds.x()) * wy * wz;
     g.y() += value * (dy != 0 ? ds.y() : -ds.y()) * wx * wz;
     g.z() += value * (dz != 0 ? ds.z() : -ds.z()) * wx * wy;
   }
-  return g;
+  return noise;
+}
+
+/// How much of a pattern of this cell size shows at a pixel's footprint.
+float visible_share(float cell, float footprint) {
+  return std::clamp(cell / std::max(footprint, 1e-12F) / 2 - 0.75F, 0.F, 1.F);
 }
 
 }  // namespace
@@ -86,12 +98,34 @@ Eigen::Vector3f grain_slope(const Eigen::Vector3f& rest, float strength, float s
   float cell = 0.0022F * size;
   float weight = 0.055F * strength;
   for (int octave = 0; octave < 2; ++octave) {
-    const float fade = std::clamp(cell / std::max(footprint, 1e-12F) / 2 - 0.75F, 0.F, 1.F);
-    if (fade > 0) bump += weight * fade * noise_gradient(rest / cell);
+    const float fade = visible_share(cell, footprint);
+    if (fade > 0) bump += weight * fade * noise_at(rest / cell).gradient;
     cell *= 0.46F;
     weight *= 0.9F;
   }
   return bump;
+}
+
+Streak fibre_streak(const Eigen::Vector3f& rest, const Eigen::Vector3f& fibre, float size, float footprint) {
+  // Noise averaged along the fibre (line integral convolution, Cabral and Leedom 1993), in two widths: fascicles and
+  // the bundles within.
+  Streak streak;
+  constexpr int taps = 14;
+  const float cells[2] = {0.0030F * size, 0.0012F * size}, steps[2] = {0.55F, 0.85F}, weights[2] = {2.4F, 2.0F};
+  for (int octave = 0; octave < 2; ++octave) {
+    const float cell = cells[octave], fade = visible_share(1.6F * cell, footprint) * weights[octave];
+    if (fade <= 0) continue;
+    Noise sum;
+    for (int k = 0; k < taps; ++k) {
+      const float along = steps[octave] * (static_cast<float>(k) - 0.5F * (taps - 1));
+      const Noise noise = noise_at(rest / cell + along * fibre);
+      sum.value += noise.value / taps;
+      sum.gradient += noise.gradient / taps;
+    }
+    streak.light += fade * sum.value;
+    streak.slope += fade * (sum.gradient - fibre * fibre.dot(sum.gradient));
+  }
+  return streak;
 }
 
 }  // namespace phiz::detail

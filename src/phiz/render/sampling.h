@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Internal: fixed sample patterns and the fine bump of skin. Included by sources only.
+/// Internal: fixed sample patterns, the fine bump of skin and the streaks of muscle. Included by sources only.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,5 +24,13 @@ std::vector<Sample2> lens_offsets(int count);
 
 /// Slope of a fine bump at a rest position; fades out when a pixel (`footprint`) is coarser than the bump.
 Eigen::Vector3f grain_slope(const Eigen::Vector3f& rest, float strength, float size, float footprint);
+
+/// Streaks along a direction: how much lighter (above 0) or darker than its surroundings a rest position is, about -1
+/// to 1, and the slope of the ridges that go with it. `fibre`: unit. Fades out like the grain.
+struct Streak {
+  float light = 0;
+  Eigen::Vector3f slope = Eigen::Vector3f::Zero();
+};
+Streak fibre_streak(const Eigen::Vector3f& rest, const Eigen::Vector3f& fibre, float size, float footprint);
 
 }  // namespace phiz::detail

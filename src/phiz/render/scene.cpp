@@ -44,6 +44,7 @@ void validate(const Scene& scene) {
     check(s.normals, "normals");
     check(s.colour, "colour");
     check(s.rest, "rest");
+    check(s.fibre, "fibre");
     if (!s.wireframe.edges.empty() && static_cast<Eigen::Index>(s.wireframe.edges.size()) != s.mesh.F.rows())
       reject(where, fmt::format("{} edge flags for {} triangles", s.wireframe.edges.size(), s.mesh.F.rows()),
              "give one per triangle or none");

@@ -22,6 +22,7 @@ struct Material {
   double opacity = 1;                 ///< below 1: what lies behind shows through, less so at grazing angles
   double unlit = 0;                   ///< share of the picture's colour that is the plain albedo (heat maps: about 0.5)
   double grain = 0;                   ///< strength of a fine bump over the rest shape (pores), 0 none
+  double striation = 0;               ///< strength of streaks in colour and bump along Surface::fibre, 0 none
 };
 
 /// Edge lines drawn over a surface.
@@ -39,11 +40,13 @@ struct Surface {
   MatrixX3d normals;  ///< unit normal per vertex; empty: angle-weighted normals are computed
   MatrixX3d colour;   ///< linear RGB per vertex, multiplied with the albedo; empty: none
   MatrixX3d rest;     ///< positions that fix the grain of the material to the moving surface; empty: mesh.V
+  MatrixX3d fibre;    ///< direction of the streaks per vertex, in the frame of the mesh; empty: none
   std::function<Vector3d(const Vector3d&)> colour_at;  ///< colour pattern at a rest position, multiplied with the
                                                        ///< albedo too; empty: none. Called from several threads.
   Material material;
   Wireframe wireframe;
-  bool flat = false;  ///< shade with face normals
+  bool flat = false;   ///< shade with face normals
+  double outline = 0;  ///< how dark a thin line in the picture is where this and another surface meet, 0 none, 1 black
 };
 
 /// A round soft box that faces the middle of the scene. `irradiance`: what it gives to a surface that faces it.

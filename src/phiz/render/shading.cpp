@@ -123,7 +123,16 @@ Vector3f radiance(const ShadingContext& c, const ShadedPoint& p, const Vector3f&
         p.surface->rotation * grain_slope(p.rest, static_cast<float>(m.grain), c.rays->size(), footprint);
     n = (n - (slope - n * n.dot(slope))).normalized();
   }
-  const Vector3f albedo = m.albedo.cast<float>().cwiseProduct(p.colour);
+  Vector3f albedo = m.albedo.cast<float>().cwiseProduct(p.colour);
+  if (const float length = p.fibre.norm(); length > 0.1F) {
+    const float strength = static_cast<float>(m.striation);
+    const Streak streak = fibre_streak(p.rest, p.fibre / length, c.rays->size(), footprint);
+    const Vector3f slope = p.surface->rotation * (0.22F * strength * streak.slope);
+    n = (n - (slope - n * n.dot(slope))).normalized();
+    // Light streaks are connective tissue: paler, not only brighter.
+    const float light = strength * streak.light;
+    albedo = albedo.cwiseProduct(Vector3f(1 + 0.7F * light, 1 + 1.1F * light, 1 + 1.1F * light).cwiseMax(0.25F));
+  }
   const Vector3f scatter = m.scatter.cast<float>();
   const float nv = std::clamp(n.dot(view), 0.F, 1.F);
   const float shine = ambient_reflectance(static_cast<float>(m.specular), static_cast<float>(m.roughness), nv);

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "phiz/anatomy/attachments.h"
 #include "phiz/anatomy/builtin/bones/bones.h"
 #include "phiz/anatomy/contact_regions.h"
 #include "phiz/anatomy/builtin/expressions/shapes.h"
@@ -16,6 +17,7 @@
 #include "phiz/anatomy/builtin/muscles.h"
 #include "phiz/anatomy/builtin/skin/eye.h"
 #include "phiz/anatomy/builtin/skin/surface.h"
+#include "phiz/anatomy/fibres.h"
 #include "phiz/core/error.h"
 #include "phiz/geometry/tetrahedralise.h"
 
@@ -142,12 +144,13 @@ HeadTemplate build_builtin_head(const BuiltinOptions& options) {
   assign_contacts(head, simulated.regions);
 
   report("muscles");
-  std::vector<MuscleBundle> muscles = make_muscles(proportions);
-  settle_muscles(muscles, head);
-  assign_muscles(head, muscles);
+  std::vector<MuscleBundle> bundles = make_muscle_bundles(proportions);
+  settle_muscles(bundles, head);
+  head.muscles = make_muscles(head.volume, muscle_shapes(bundles, head));
+  head.attachments = find_attachments(head);
   if (options.expressions) {
     report("expressions");
-    head.expressions = make_expressions(head, proportions);
+    head.expressions = make_expressions(head, proportions, bundles);
   }
   validate(head, head.name);
   return head;

@@ -32,7 +32,7 @@ std::vector<ThicknessSite> thickness_sites(const Proportions& p) {
   const std::vector<ThicknessSite> left{
       {"frontalEminence", {0.030, p.trichion.x() - 10 * mm, p.trichion.y() - 4 * mm}, 5.0 * mm, false},
       {"midSupraorbital", {eye.x(), p.glabella.x(), p.glabella.y() - 6 * mm}, 6.5 * mm, false},
-      {"midInfraorbital", {eye.x(), eye.y() - 20 * mm, eye.z() + 9 * mm}, 7.0 * mm, false},
+      {"midInfraorbital", {eye.x(), eye.y() - p.eye_radius - 8 * mm, eye.z() + 9 * mm}, 7.0 * mm, false},
       {"alarCurvature", {p.alare.x() + 4 * mm, p.alare.y(), p.alare.z() - 8 * mm}, 9.5 * mm, false},
       {"lateralOrbit", {outer.x() + 9 * mm, outer.y(), outer.z() - 8 * mm}, 6.5 * mm, false},
       {"temple", {0.93 * zyg.x(), eye.y() + 18 * mm, zyg.z()}, 10.0 * mm, false},
@@ -101,8 +101,10 @@ std::vector<SkullLandmark> find_skull_landmarks(const HeadTemplate& head, const 
     landmark.thickness_deviation = std::max(0.0015, 0.3 * hit->t);
     Eigen::Index corner = 0;
     hit->barycentric.maxCoeff(&corner);
-    // Vertices of the simulation skin come first in the volume and have the same rows in the drawn skin.
-    landmark.skin_vertex = skin.F(hit->triangle, corner);
+    // Vertices of the simulation skin come first in the volume; the drawn vertex that has most to do with it.
+    double most = 0;
+    for (SparseMatrixd::InnerIterator it(head.skin_sampling, skin.F(hit->triangle, corner)); it; ++it)
+      if (it.value() > most) most = it.value(), landmark.skin_vertex = static_cast<int>(it.col());
     landmarks.push_back(landmark);
   }
   return landmarks;

@@ -194,7 +194,7 @@ FibrePoint nearest_on_fibre(const MatrixX3d& fibre, const Vector3d& p) {
   return best;
 }
 
-std::vector<MuscleBundle> make_muscles(const Proportions& p) {
+std::vector<MuscleBundle> make_muscle_bundles(const Proportions& p) {
   const Mask mask(p);
   const double mm = 1e-3;
   std::vector<MuscleBundle> all;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "phiz/anatomy/builtin/proportions.h"
+#include "phiz/anatomy/fibre_field.h"
 #include "phiz/anatomy/head_template.h"
 
 namespace phiz {
@@ -32,15 +33,16 @@ FibrePoint nearest_on_fibre(const MatrixX3d& fibre, const Vector3d& p);
 
 /// All muscles, left before right, in a fixed order: 33 of expression, then masseter and temporalis. Exactly mirrored.
 /// The points lie near the skin that the proportions describe; settle_muscles puts them into a particular head.
-std::vector<MuscleBundle> make_muscles(const Proportions& proportions);
+std::vector<MuscleBundle> make_muscle_bundles(const Proportions& proportions);
 
 /// Moves every fibre point between the bone (carried vertices) and the skin of `head`, at the depth that the bundle
 /// states, not deeper than 14 mm, and smooths the fibres. Uses head.volume, head.carrier, head.skin_triangles.
 void settle_muscles(std::vector<MuscleBundle>& muscles, const HeadTemplate& head);
 
-/// Fills head.muscles: fibres, and per flesh tet the share that lies within `radius` of a fibre and the unit direction
-/// of the nearest fibre, by sampling each tet at fixed points. Where muscles overlap the shares are scaled so that
-/// their sum stays at most 1.
-void assign_muscles(HeadTemplate& head, const std::vector<MuscleBundle>& muscles);
+/// The bundles as closed surfaces: tubes of the bundle's radius round its fibres, and round as many between these as
+/// make a sheet, moved so that they have room between the skin (inner skin too) and the bones; thinner where there is
+/// less. Origin and insertion are the ends of the fibres; right ones are mirror images. Uses head.volume and
+/// head.skin_triangles.
+std::vector<MuscleShape> muscle_shapes(const std::vector<MuscleBundle>& bundles, const HeadTemplate& head);
 
 }  // namespace phiz

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "phiz/anatomy/builtin/expressions/skin.h"
@@ -65,73 +63,6 @@ struct Layers {
   }
 };
 
-/// 35 points spread evenly over a tet: the centroids of a regular subdivision.
-std::vector<Eigen::Vector4d> sample_points() {
-  constexpr int n = 4;
-  std::vector<Eigen::Vector4d> points;
-  for (int i = 0; i <= n; ++i)
-    for (int j = 0; i + j <= n; ++j)
-      for (int k = 0; i + j + k <= n; ++k)
-        points.push_back((Eigen::Vector4d(i, j, k, n - i - j - k).array() + 0.25).matrix() / (n + 1));
-  return points;
-}
-
-Muscle fill(const HeadTemplate& head, const MuscleBundle& bundle, const std::vector<Eigen::Vector4d>& samples) {
-  Eigen::AlignedBox3d box;
-  for (const MatrixX3d& fibre : bundle.fibres)
-    for (Eigen::Index i = 0; i < fibre.rows(); ++i) box.extend(Vector3d(fibre.row(i)));
-  const Eigen::AlignedBox3d reach(box.min().array() - bundle.radius, box.max().array() + bundle.radius);
-  std::vector<int> tets;
-  std::vector<double> shares;
-  std::vector<Vector3d> directions;
-  const double limit = bundle.radius * bundle.radius;
-  for (int t = 0; t < head.volume.T.rows(); ++t) {
-    if (head.volume.region[t] != Tissue::flesh) continue;
-    Eigen::Matrix<double, 3, 4> corners;
-    Eigen::AlignedBox3d tet;
-    for (int k = 0; k < 4; ++k) {
-      corners.col(k) = head.volume.V.row(head.volume.T(t, k)).transpose();
-      tet.extend(Vector3d(corners.col(k)));
-    }
-    if (!reach.intersects(tet)) continue;
-    int inside = 0;
-    Matrix3d spread = Matrix3d::Zero();
-    Vector3d towards_insertion = Vector3d::Zero();
-    for (const Eigen::Vector4d& s : samples) {
-      const Vector3d p = corners * s;
-      double best = limit;
-      Vector3d along = Vector3d::Zero();
-      for (const MatrixX3d& fibre : bundle.fibres) {
-        const FibrePoint near = nearest_on_fibre(fibre, p);
-        if (near.squared_distance < best) {
-          best = near.squared_distance;
-          along = (fibre.row(near.piece + 1) - fibre.row(near.piece)).transpose().normalized();
-        }
-      }
-      if (along.isZero()) continue;
-      ++inside;
-      spread += along * along.transpose();
-      towards_insertion = along;
-    }
-    if (inside == 0) continue;
-    tets.push_back(t);
-    shares.push_back(inside / double(samples.size()));
-    Eigen::SelfAdjointEigenSolver<Matrix3d> axes;
-    axes.computeDirect(spread);
-    const Vector3d axis = axes.eigenvectors().col(2).normalized();
-    directions.push_back(axis.dot(towards_insertion) < 0 ? Vector3d(-axis) : axis);
-  }
-  Muscle muscle;
-  muscle.name = bundle.name;
-  muscle.fibres = bundle.fibres;
-  const auto n = static_cast<Eigen::Index>(tets.size());
-  muscle.tets = Eigen::Map<VectorXi>(tets.data(), n);
-  muscle.fraction = Eigen::Map<VectorXd>(shares.data(), n);
-  muscle.direction.resize(n, 3);
-  for (Eigen::Index i = 0; i < n; ++i) muscle.direction.row(i) = directions[static_cast<std::size_t>(i)].transpose();
-  return muscle;
-}
-
 }  // namespace
 
 void settle_muscles(std::vector<MuscleBundle>& muscles, const HeadTemplate& head) {
@@ -158,23 +89,6 @@ void settle_muscles(std::vector<MuscleBundle>& muscles, const HeadTemplate& head
         }
       },
       1);
-}
-
-void assign_muscles(HeadTemplate& head, const std::vector<MuscleBundle>& muscles) {
-  const std::vector<Eigen::Vector4d> samples = sample_points();
-  head.muscles.resize(muscles.size());
-  parallel_for(
-      static_cast<std::ptrdiff_t>(muscles.size()),
-      [&](std::ptrdiff_t m) {
-        const auto i = static_cast<std::size_t>(m);
-        head.muscles[i] = fill(head, muscles[i], samples);
-      },
-      1);
-  VectorXd total = VectorXd::Zero(head.volume.T.rows());
-  for (const Muscle& muscle : head.muscles)
-    for (Eigen::Index i = 0; i < muscle.tets.size(); ++i) total[muscle.tets[i]] += muscle.fraction[i];
-  for (Muscle& muscle : head.muscles)
-    for (Eigen::Index i = 0; i < muscle.tets.size(); ++i) muscle.fraction[i] /= std::max(1.0, total[muscle.tets[i]]);
 }
 
 }  // namespace phiz

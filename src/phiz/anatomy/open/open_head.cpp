@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "phiz/anatomy/attachments.h"
 #include "phiz/anatomy/bones/implicit.h"
 #include "phiz/anatomy/contact_regions.h"
 #include "phiz/anatomy/fibres.h"
@@ -177,15 +178,18 @@ HeadTemplate build_open_head(const FaceKit& kit, const BodyParts& parts, const O
   head.jaw = joint_of(condyle_centres(mandible.V));
   head.left_eye_centre = guide.left_eye;
   head.right_eye_centre = guide.right_eye;
+  head.skull_landmarks = find_skull_landmarks(head, guide.proportions);
   assign_contacts(head, regions);
 
   report("muscles");
-  head.muscles = make_muscles(head.volume, part_muscles(parts, map, guide, skin, {skull, mandible}));
+  head.muscles =
+      make_muscles(head.volume, part_muscles(parts, map, guide, skin, {skull, mandible}), {.widest_gap = 0.008});
 
   report("expressions");
   head.expressions = kit_expressions(kit, head.skin.V.rows(), head.jaw);
 
   translate(head, -head.jaw.centre);
+  head.attachments = find_attachments(head);
   validate(head, head.name);
   return head;
 }

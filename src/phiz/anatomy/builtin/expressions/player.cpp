@@ -37,11 +37,12 @@ void smooth(MatrixX3d& D, const MatrixX3d& V, const MatrixX3i& triangles, const 
 
 }  // namespace
 
-ExpressionPlayer::ExpressionPlayer(const HeadTemplate& head, const Proportions& proportions)
+ExpressionPlayer::ExpressionPlayer(const HeadTemplate& head, const Proportions& proportions,
+                                   const std::vector<MuscleBundle>& muscles)
     : head_(head),
       proportions_(proportions),
       poser_(head.volume, head.carrier, head.skin_vertices),
-      pulls_(head),
+      pulls_(head, muscles),
       lips_(head),
       folds_(head, proportions),
       left_lids_(head, {head.left_eye_centre, proportions.eye_radius}, "left"),

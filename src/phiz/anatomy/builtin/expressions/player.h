@@ -17,8 +17,8 @@ namespace phiz {
 
 class ExpressionPlayer {
  public:
-  /// Keeps references to both arguments. Throws phiz::Error naming what the head lacks.
-  ExpressionPlayer(const HeadTemplate& head, const Proportions& proportions);
+  /// Keeps references to `head` and `proportions`. Throws phiz::Error naming what the head lacks.
+  ExpressionPlayer(const HeadTemplate& head, const Proportions& proportions, const std::vector<MuscleBundle>& muscles);
 
   /// Displacement of every vertex of head.skin, metres. A paired recipe acts on the left side.
   MatrixX3d play(const ExpressionRecipe& recipe) const;

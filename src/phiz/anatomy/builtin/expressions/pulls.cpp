@@ -6,7 +6,6 @@
 
 #include "phiz/anatomy/builtin/ease.h"
 #include "phiz/anatomy/builtin/expressions/skin.h"
-#include "phiz/anatomy/builtin/muscles.h"
 #include "phiz/core/error.h"
 
 namespace phiz {
@@ -39,7 +38,7 @@ std::string full_name(const ExpressionRecipe& recipe, std::string_view muscle,
 
 }  // namespace
 
-MusclePulls::MusclePulls(const HeadTemplate& head) : rest_(head.volume.V) {
+MusclePulls::MusclePulls(const HeadTemplate& head, const std::vector<MuscleBundle>& muscles) : rest_(head.volume.V) {
   // A muscle that ends in one lip does not take the other one along, but for the corner where they meet.
   VectorXi lip = VectorXi::Zero(rest_.rows());
   const std::vector<char> upper = simulation_mask(head, {"upperLip", "upperLipInner"});
@@ -50,7 +49,7 @@ MusclePulls::MusclePulls(const HeadTemplate& head) : rest_(head.volume.V) {
     const int v = head.skin_vertices[static_cast<Eigen::Index>(i)];
     if (std::abs(rest_(v, 0)) < corner) lip[v] = upper[i] ? 1 : lower[i] ? -1 : 0;
   }
-  for (const Muscle& muscle : head.muscles) {
+  for (const MuscleBundle& muscle : muscles) {
     Bundle bundle{muscle.fibres, {}, Vector3d::Zero(), false};
     if (bundle.fibres.empty()) continue;
     Eigen::AlignedBox3d box;
@@ -112,8 +111,7 @@ std::vector<Pull> MusclePulls::pulls(const ExpressionRecipe& recipe) const {
     const std::string name = full_name(recipe, shortened.muscle, known);
     const auto found = bundles_.find(name);
     if (found == bundles_.end())
-      reject("expression '" + std::string(recipe.name) + "'", "the head has no muscle '" + name + "'",
-             "call assign_muscles before making expressions");
+      reject("expression '" + std::string(recipe.name) + "'", "the head has no muscle '" + name + "'");
     const Bundle& bundle = found->second;
     const double last = std::max<double>(1, static_cast<double>(bundle.fibres.size()) - 1);
     for (const Reach& reach : bundle.reach) {

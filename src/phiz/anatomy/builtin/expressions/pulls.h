@@ -9,14 +9,15 @@
 
 #include "phiz/anatomy/builtin/expressions/flesh.h"
 #include "phiz/anatomy/builtin/expressions/recipes.h"
+#include "phiz/anatomy/builtin/muscles.h"
 #include "phiz/anatomy/head_template.h"
 
 namespace phiz {
 
 class MusclePulls {
  public:
-  /// Uses the fibres of head.muscles; flesh vertices within 12 mm of a fibre go with it.
-  explicit MusclePulls(const HeadTemplate& head);
+  /// Flesh vertices of `head` within 12 mm of a fibre of `muscles` go with it.
+  MusclePulls(const HeadTemplate& head, const std::vector<MuscleBundle>& muscles);
 
   /// What the muscles of a recipe draw. In a paired recipe names without a side mean the left muscle.
   /// Throws phiz::Error(bad_input) naming a muscle that the head does not have.

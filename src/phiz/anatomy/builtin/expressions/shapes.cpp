@@ -30,8 +30,9 @@ void still_far_regions(MatrixX3d& D) {
 
 }  // namespace
 
-std::vector<Expression> make_expressions(const HeadTemplate& head, const Proportions& proportions) {
-  const ExpressionPlayer player(head, proportions);
+std::vector<Expression> make_expressions(const HeadTemplate& head, const Proportions& proportions,
+                                         const std::vector<MuscleBundle>& muscles) {
+  const ExpressionPlayer player(head, proportions, muscles);
   const VectorXi& partner = player.partners();
   std::map<std::string, Expression> made;
   MatrixX3d jaw_open;

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "phiz/anatomy/head_measures.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "phiz/anatomy/face_frame.h"
+#include "phiz/anatomy/fibres.h"
+#include "phiz/core/parallel.h"
+#include "phiz/geometry/operators.h"
+#include "phiz/geometry/spatial_query.h"
+#include "phiz/geometry/surface.h"
+
+namespace phiz {
+namespace {
+
+/// Centre and principal axes of the volume that a muscle fills, by its tets; variances ascend.
+struct Principal {
+  Vector3d centre = Vector3d::Zero();
+  Matrix3d axes = Matrix3d::Identity();
+  Vector3d variance = Vector3d::Ones();
+};
+
+Principal principal_axes(const MatrixX3d& points, const VectorXd& weights) {
+  Principal p;
+  p.centre = points.transpose() * weights / weights.sum();
+  const MatrixX3d from = points.rowwise() - p.centre.transpose();
+  const Matrix3d covariance = from.transpose() * weights.asDiagonal() * from / weights.sum();
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(covariance);
+  p.axes = solver.eigenvectors();
+  p.variance = solver.eigenvalues();
+  return p;
+}
+
+/// Tangent at x of the ellipse through x that is similar to the muscle's.
+Vector3d ellipse_tangent(const Principal& p, const Vector3d& x) {
+  const Vector3d local = p.axes.transpose() * (x - p.centre);
+  const double along = local[2] / p.variance[2], across = local[1] / p.variance[1];  // gradient of the quadric
+  return (p.axes.col(1) * along - p.axes.col(2) * across).stableNormalized();
+}
+
+Vector3d own_axis(const Muscle& muscle, const Principal& p) {
+  constexpr double spindle = 3;
+  if (p.variance[2] >= spindle * p.variance[1] || muscle.fibres.empty()) return p.axes.col(2);
+  Vector3d way = Vector3d::Zero();
+  for (const MatrixX3d& fibre : muscle.fibres) way += (fibre.row(fibre.rows() - 1) - fibre.row(0)).transpose();
+  return way.stableNormalized();
+}
+
+/// Value below which half of the weight lies.
+double weighted_median(std::vector<std::pair<double, double>> values) {
+  std::sort(values.begin(), values.end());
+  double all = 0, sum = 0;
+  for (const auto& [value, weight] : values) all += weight;
+  for (const auto& [value, weight] : values)
+    if ((sum += weight) >= 0.5 * all) return value;
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+/// The vertices of an incisal edge: those of the front teeth within 1 mm of their extreme height (sign: 1 highest).
+MatrixX3d incisal_edge(const MatrixX3d& V, double sign) {
+  constexpr double half_width = 0.006, depth = 0.008, edge = 0.001;
+  double front = -std::numeric_limits<double>::infinity(), extreme = front;
+  for (Eigen::Index i = 0; i < V.rows(); ++i)
+    if (std::abs(V(i, 0)) < half_width) front = std::max(front, V(i, 2));
+  const auto incisor = [&](Eigen::Index i) { return std::abs(V(i, 0)) < half_width && V(i, 2) > front - depth; };
+  for (Eigen::Index i = 0; i < V.rows(); ++i)
+    if (incisor(i)) extreme = std::max(extreme, sign * V(i, 1));
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index i = 0; i < V.rows(); ++i)
+    if (incisor(i) && sign * V(i, 1) > extreme - edge) rows.push_back(i);
+  return V(rows, Eigen::all);
+}
+
+}  // namespace
+
+MuscleFigures muscle_figures(const HeadTemplate& head, const Muscle& muscle) {
+  MuscleFigures figures;
+  figures.name = muscle.name;
+  if (muscle.surface.F.rows() > 0) figures.share_in_flesh = share_in_flesh(head.volume, muscle.surface);
+  if (muscle.tets.size() == 0) {
+    figures.angle = std::numeric_limits<double>::infinity();
+    return figures;
+  }
+  MatrixX3d centres(muscle.tets.size(), 3);
+  VectorXd weights(muscle.tets.size());
+  for (Eigen::Index i = 0; i < muscle.tets.size(); ++i) {
+    const auto corners = head.volume.T.row(muscle.tets[i]);
+    centres.row(i) = head.volume.V(corners, Eigen::all).colwise().mean();
+  }
+  weights = muscle.fraction.cwiseProduct(tet_volumes(head.volume.V, head.volume.T(muscle.tets, Eigen::all)));
+  figures.volume = weights.sum();
+  const Principal p = principal_axes(centres, weights);
+  const Vector3d axis = muscle.ring ? Vector3d::Zero() : own_axis(muscle, p);
+  std::vector<std::pair<double, double>> angles;
+  for (Eigen::Index i = 0; i < weights.size(); ++i) {
+    const Vector3d expected = muscle.ring ? ellipse_tangent(p, centres.row(i)) : axis;
+    const double along = std::min(1.0, std::abs(expected.dot(Vector3d(muscle.direction.row(i)))));
+    angles.emplace_back(std::acos(along) * 180 / std::numbers::pi, weights[i]);
+  }
+  figures.angle = weighted_median(angles);
+  return figures;
+}
+
+Occlusion occlusion(const HeadTemplate& head) {
+  Occlusion result;
+  const Part* upper = find_part(head, "upperTeeth");
+  const Part* lower = find_part(head, "lowerTeeth");
+  if (upper == nullptr || lower == nullptr || upper->mesh.F.rows() == 0 || lower->mesh.F.rows() == 0) return result;
+  const MatrixX3d above = incisal_edge(upper->mesh.V, -1), below = incisal_edge(lower->mesh.V, 1);
+  if (above.rows() == 0 || below.rows() == 0) return result;
+  result.known = true;
+  result.overbite = below.col(1).maxCoeff() - above.col(1).minCoeff();
+  result.overjet = above.col(2).maxCoeff() - below.col(2).maxCoeff();
+  const VectorXd up = SurfaceQuery(lower->mesh).signed_distances(upper->mesh.V);
+  const VectorXd down = SurfaceQuery(upper->mesh).signed_distances(lower->mesh.V);
+  const double least = std::min(up.minCoeff(), down.minCoeff());
+  result.gap = std::max(0.0, least);
+  result.interpenetration = std::max(0.0, -least);
+  return result;
+}
+
+std::vector<ExpressionFigures> expression_figures(const HeadTemplate& head) {
+  std::vector<ExpressionFigures> figures(head.expressions.size());
+  const Expression* open = find_expression(head, "jawOpen");
+  parallel_for(
+      static_cast<std::ptrdiff_t>(figures.size()),
+      [&](std::ptrdiff_t i) {
+        const Expression& e = head.expressions[static_cast<std::size_t>(i)];
+        MatrixX3d displacement = e.displacement;
+        if (e.name == "mouthClose" && open != nullptr) displacement += open->displacement;
+        figures[static_cast<std::size_t>(i)] = {e.name, self_intersections(simulation_skin(head, displacement)).size()};
+      },
+      1);
+  return figures;
+}
+
+double active_share_of_face(const HeadTemplate& head) {
+  const FaceFrame frame = face_frame(head);
+  const VectorXd volume = tet_volumes(head.volume.V, head.volume.T);
+  const auto in_face = [&](int t) {
+    const Eigen::RowVector3d c = head.volume.V(head.volume.T.row(t), Eigen::all).colwise().mean();
+    return head.volume.region(t) == Tissue::flesh && c.z() > head.jaw.centre.z() && c.y() > frame.menton &&
+           c.y() < frame.brow;
+  };
+  double all = 0, active = 0;
+  for (int t = 0; t < head.volume.T.rows(); ++t) all += in_face(t) ? volume(t) : 0;
+  for (const Muscle& m : head.muscles)
+    for (Eigen::Index i = 0; i < m.tets.size(); ++i)
+      active += in_face(m.tets(i)) ? m.fraction(i) * volume(m.tets(i)) : 0;
+  return all > 0 ? active / all : 0;
+}
+
+}  // namespace phiz
