@@ -84,6 +84,14 @@ double depth_round(const VoxelGrid& grid, const HarmonicFlow& flow, const VoxelF
   return (deepest - 0.5) * grid.spacing;
 }
 
+/// From the points of one end to the nearest ones of the other, on average: halves of a muscle count for themselves.
+double mean_distance(const MatrixX3d& from, const MatrixX3d& to) {
+  double sum = 0;
+  for (Eigen::Index i = 0; i < from.rows(); ++i)
+    sum += std::sqrt((to.rowwise() - from.row(i)).rowwise().squaredNorm().minCoeff());
+  return sum / static_cast<double>(from.rows());
+}
+
 /// The rows round the points of an end: those nearest to each point, and what lies round these, as far as the muscle is
 /// thick there, so that the end goes across all of it;
 /// but not beyond `limit` metres.
@@ -210,7 +218,7 @@ HarmonicFlow flow_between(const VoxelGrid& grid, const VoxelFlags& domain, const
                           const MatrixX3d& insertion) {
   HarmonicFlow flow = start(grid, domain);
   const std::vector<int> pieces = pieces_of_rows(grid, domain, flow);
-  const double limit = longest_end * (origin.colwise().mean() - insertion.colwise().mean()).norm();
+  const double limit = longest_end * mean_distance(origin, insertion);
   const Rows first = rows_of_end(grid, flow, origin, limit);
   Rows last = rows_of_end(grid, flow, insertion, limit);
   std::vector<int> ends(pieces.size() + 1, 0);  // per piece: 1 has an origin, 2 an insertion, 3 both
