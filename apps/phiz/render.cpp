@@ -164,7 +164,8 @@ Image make_sheet(const RenderArguments& a, const Subject& subject, std::vector<V
   }
   if (cells.empty()) fail("interrupted before the first picture");
   const std::string what = a.subject.view.style == HeadStyle::heat ? subject.scale.quantity : a.style;
-  return with_legend(contact_sheet(cells, {.title = subject.name + " - " + what}), subject.names);
+  const int in_a_row = cells.size() <= 3 ? static_cast<int>(cells.size()) : 0;
+  return with_legend(contact_sheet(cells, {.title = subject.name + " - " + what, .columns = in_a_row}), subject.names);
 }
 
 /// Frames of a take at the film's rate, or a turn of what does not move. Returns the number of frames.

@@ -189,15 +189,14 @@ Scene build_scene(const PosedHead& posed, const HeadViewOptions& options) {
 
   for (std::size_t i = 0; i < posed.parts->size(); ++i) {
     const bool bone = is_bone((*posed.parts)[i]);
-    if (bone ? inside && !maps : true) scene.surfaces.push_back(part_surface(posed, i, coloured));
+    if (bone && (!inside || maps)) continue;
+    Surface part = part_surface(posed, i, coloured);
+    if (bone && style == HeadStyle::fibres) part.material.albedo *= 0.45;  // white fibres stand out
+    scene.surfaces.push_back(std::move(part));
   }
   if (style == HeadStyle::muscles || (style == HeadStyle::anatomy && posed.head != nullptr))
     add_muscles(scene, posed, options);
-  if (style == HeadStyle::fibres)
-    for (const ShownMuscle& muscle : shown_muscles(*posed.head, options)) {
-      Surface tubes = fibre_tubes(posed, muscle, options, 0.0004, !options.muscle_colours);
-      if (tubes.mesh.F.rows() > 0) scene.surfaces.push_back(std::move(tubes));
-    }
+  if (style == HeadStyle::fibres) add_fibres(scene, posed, options);
   if (style == HeadStyle::attachments) add_attachments(scene, posed);
   if (style == HeadStyle::contacts) add_contacts(scene, posed, options);
   return scene;

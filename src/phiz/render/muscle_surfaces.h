@@ -37,7 +37,9 @@ Surface fibre_tubes(const PosedHead& posed, const ShownMuscle& muscle, const Hea
 Vector3d origin_colour();
 Vector3d insertion_colour();
 
-/// Bellies, and thin tubes for muscles without a surface.
+/// Bellies, and thick tubes for muscles without a surface.
 void add_muscles(Scene& scene, const PosedHead& posed, const HeadViewOptions& options);
+/// Thin tubes for all muscles.
+void add_fibres(Scene& scene, const PosedHead& posed, const HeadViewOptions& options);
 
 }  // namespace phiz::detail
