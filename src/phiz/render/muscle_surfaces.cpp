@@ -13,7 +13,6 @@
 #include "phiz/core/error.h"
 #include "phiz/core/nearest_words.h"
 #include "phiz/core/parallel.h"
-#include "phiz/geometry/spatial_query.h"
 #include "phiz/render/materials.h"
 #include "phiz/render/palette.h"
 
@@ -28,14 +27,6 @@ std::string plain(std::string_view name) {
     if (std::isalnum(static_cast<unsigned char>(c)) != 0)
       letters += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return letters;
-}
-
-/// Points of the head at rest, moved with the tissue.
-MatrixX3d carried(const PosedHead& posed, const MatrixX3d& points) {
-  const TetMesh& volume = posed.head->volume;
-  if (posed.volume_now.rows() == 0 || volume.T.rows() == 0 || posed.volume_now == volume.V) return points;
-  const SparseMatrixd weights = interpolation_matrix(TetQuery(volume).nearest_all(points), volume.T, volume.V.rows());
-  return points + weights * (posed.volume_now - volume.V);
 }
 
 /// The line a muscle follows at one place.
@@ -138,6 +129,19 @@ void copy_rows(const Rows& rows, Matrix& matrix) {
 
 }  // namespace
 
+TissueMotion::TissueMotion(const PosedHead& posed) {
+  const TetMesh& volume = posed.head->volume;
+  if (posed.volume_now.rows() == 0 || volume.T.rows() == 0 || posed.volume_now == volume.V) return;
+  tets_.emplace(volume);
+  T_ = &volume.T;
+  moved_ = posed.volume_now - volume.V;
+}
+
+MatrixX3d TissueMotion::operator()(const MatrixX3d& points) const {
+  if (!tets_) return points;
+  return points + interpolation_matrix(tets_->nearest_all(points), *T_, moved_.rows()) * moved_;
+}
+
 std::string muscle_stem(const std::string& name) {
   for (const std::string_view side : {"Left", "Right"})
     if (name.size() > side.size() && name.ends_with(side)) return name.substr(0, name.size() - side.size());
@@ -183,12 +187,13 @@ Vector3d insertion_colour() {
   return {0.60, 0.045, 0.035};
 }
 
-Surface muscle_belly(const PosedHead& posed, const ShownMuscle& shown, const HeadViewOptions& options) {
+Surface muscle_belly(const PosedHead& posed, const TissueMotion& motion, const ShownMuscle& shown,
+                     const HeadViewOptions& options) {
   const Muscle& muscle = posed.head->muscles[shown.row];
   Surface s;
   s.name = muscle.name;
   s.mesh.F = muscle.surface.F;
-  s.mesh.V = carried(posed, muscle.surface.V);
+  s.mesh.V = motion(muscle.surface.V);
   s.rest = muscle.surface.V;
   s.material = muscle_material();
   s.outline = 0.55;
@@ -208,14 +213,14 @@ Surface muscle_belly(const PosedHead& posed, const ShownMuscle& shown, const Hea
   return s;
 }
 
-Surface fibre_tubes(const PosedHead& posed, const ShownMuscle& shown, const HeadViewOptions& options, double radius,
-                    bool graded) {
+Surface fibre_tubes(const PosedHead& posed, const TissueMotion& motion, const ShownMuscle& shown,
+                    const HeadViewOptions& options, double radius, bool graded) {
   const Muscle& muscle = posed.head->muscles[shown.row];
   const Vector3d own = colour_of(shown, options);
   Tubes tubes;
   for (const MatrixX3d& fibre : muscle.fibres)
     if (fibre.rows() > 1)
-      tubes.add(carried(posed, fibre), radius, graded ? origin_colour() : own, graded ? insertion_colour() : own);
+      tubes.add(motion(fibre), radius, graded ? origin_colour() : own, graded ? insertion_colour() : own);
   Surface s;
   s.name = muscle.name;
   s.material = muscle_material();
@@ -227,17 +232,20 @@ Surface fibre_tubes(const PosedHead& posed, const ShownMuscle& shown, const Head
 }
 
 void add_muscles(Scene& scene, const PosedHead& posed, const HeadViewOptions& options) {
+  const TissueMotion motion(posed);
   for (const ShownMuscle& muscle : shown_muscles(*posed.head, options)) {
     const bool belly = posed.head->muscles[muscle.row].surface.F.rows() > 0;
     push_peeled(scene,
-                belly ? muscle_belly(posed, muscle, options) : fibre_tubes(posed, muscle, options, 0.00075, false),
+                belly ? muscle_belly(posed, motion, muscle, options)
+                      : fibre_tubes(posed, motion, muscle, options, 0.00075, false),
                 options.peel);
   }
 }
 
 void add_fibres(Scene& scene, const PosedHead& posed, const HeadViewOptions& options) {
+  const TissueMotion motion(posed);
   for (const ShownMuscle& muscle : shown_muscles(*posed.head, options))
-    push_peeled(scene, fibre_tubes(posed, muscle, options, 0.0004, !options.muscle_colours), options.peel);
+    push_peeled(scene, fibre_tubes(posed, motion, muscle, options, 0.0004, !options.muscle_colours), options.peel);
 }
 
 }  // namespace phiz::detail
