@@ -111,10 +111,9 @@ Image picture(const Subject& subject, int frame, View view, Extent extent, const
   return image;
 }
 
-/// With names beside it, inside of the extent.
-Image picture_with_names(const Subject& subject, int frame, View view, Extent extent, const RenderOptions& options) {
-  extent.width = std::max(extent.width - legend_width(subject.names, extent.height), extent.width / 2);
-  return with_legend(picture(subject, frame, view, extent, options), subject.names);
+/// What the names beside a picture leave of the extent, at least half.
+Extent beside_names(const Subject& subject, Extent extent) {
+  return {std::max(extent.width - legend_width(subject.names, extent.height), extent.width / 2), extent.height};
 }
 
 std::string frame_caption(const Subject& subject, int frame) {
@@ -164,13 +163,14 @@ Image make_sheet(const RenderArguments& a, const Subject& subject, std::vector<V
   }
   if (cells.empty()) fail("interrupted before the first picture");
   const std::string what = a.subject.view.style == HeadStyle::heat ? subject.scale.quantity : a.style;
-  return with_legend(contact_sheet(cells, {.title = subject.name + " - " + what}), subject.names);
+  const int in_a_row = cells.size() <= 3 ? static_cast<int>(cells.size()) : 0;
+  return with_legend(contact_sheet(cells, {.title = subject.name + " - " + what, .columns = in_a_row}), subject.names);
 }
 
 /// Frames of a take at the film's rate, or a turn of what does not move. Returns the number of frames.
 int make_film(const RenderArguments& a, const Subject& subject, View view) {
   catch_interrupts();
-  const Extent extent = extent_of(a.size, 640);
+  const Extent extent = beside_names(subject, extent_of(a.size, 640));
   const RenderOptions options = rays(a.quality, true);
   const bool moving = subject.frames > 1;
   const FrameRange range = frames_of(a, subject);
@@ -191,11 +191,21 @@ int make_film(const RenderArguments& a, const Subject& subject, View view) {
     }
     Image image = render(subject.scene(frame, is_close_up(view)), placed, options);
     if (subject.has_legend) draw_legend(image, subject.scale);
-    film.add(image);
+    film.add(with_legend(image, subject.names));
     progress.advance();
   }
   film.finish();
   return film.frames();
+}
+
+/// Options that the style would not heed are mistakes.
+void check_style(const HeadViewOptions& view) {
+  const HeadStyle s = view.style;
+  const bool layers = s == HeadStyle::muscles || s == HeadStyle::fibres;
+  if ((!view.muscles.empty() || view.muscle_colours) && !layers && s != HeadStyle::cutaway && s != HeadStyle::anatomy)
+    misuse("--muscle and --muscle-colours need --style muscles, fibres, cutaway or anatomy");
+  if (view.peel && !layers && s != HeadStyle::attachments && s != HeadStyle::contacts)
+    misuse("--peel needs --style muscles, fibres, attachments or contacts");
 }
 
 void run_render(RenderArguments a) {
@@ -208,6 +218,7 @@ void run_render(RenderArguments a) {
   a.subject.view.style = head_style(a.style);
   if (!a.cut.empty()) a.subject.view.plane = cut_plane("--cut", a.cut);
   if (!a.peel.empty()) a.subject.view.peel = cut_plane("--peel", a.peel);
+  check_style(a.subject.view);
   if (!a.range.empty()) {
     std::tie(a.subject.low, a.subject.high) = two_numbers(a.range, ':', "--range", "LOW:HIGH");
     if (!(a.subject.low < a.subject.high)) misuse("--range must go from a lower to a higher number");
@@ -234,8 +245,9 @@ void run_render(RenderArguments a) {
     write_png(a.output, make_sheet(a, subject, views));
   } else {
     const FrameRange range = frames_of(a, subject);
-    write_png(a.output, picture_with_names(subject, a.frame >= 0 ? a.frame : range.first, first, extent_of(a.size, 800),
-                                           rays(a.quality, false)));
+    const Extent extent = beside_names(subject, extent_of(a.size, 800));
+    const Image image = picture(subject, a.frame >= 0 ? a.frame : range.first, first, extent, rays(a.quality, false));
+    write_png(a.output, with_legend(image, subject.names));
   }
   if (interrupted()) fail("stopped; what is finished is kept in " + a.output);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -69,6 +69,8 @@ Subject open_mesh(const SubjectOptions& options) {
   base->mesh = triangulate(polygons, &face);
   if (base->mesh.F.rows() == 0) reject(options.file, "it has no faces", "give a mesh with triangles or polygons");
   if (suspect_unit(base->mesh.V).extent <= 0) reject(options.file, "all its vertices are in one place");
+  for (const HeadStyle s : {HeadStyle::muscles, HeadStyle::fibres, HeadStyle::attachments, HeadStyle::contacts})
+    if (options.view.style == s) misuse(options.file + " is a mesh and has no muscles, attachments or contact regions");
   if (const std::string defect = unit_defect(base->mesh.V); options.view.style == HeadStyle::cutaway && !defect.empty())
     reject(options.file, defect);  // the plane of the cut is in millimetres
   Subject subject;

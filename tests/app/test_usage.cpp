@@ -47,6 +47,9 @@ TEST(Usage, MistakesOnTheCommandLineExitWithTwo) {
       {"render", "head.phiz", "-o", "head.png", "--expression", "jawOpen=1e30"},
       {"render", "head.phiz", "-o", "head.png", "--size", "0x0"},
       {"render", "take.phiz", "-o", "film.mp4", "--sheet"},
+      {"render", "head.phiz", "-o", "head.png", "--peel", "x=0"},
+      {"render", "head.phiz", "-o", "head.png", "--style", "muscles", "--peel", "left"},
+      {"render", "head.phiz", "-o", "head.png", "--style", "skin", "--muscle", "masseter"},
       {"render", "head.phiz", "-o", "film.mp4", "--all-expressions"},
       {"bench", "volumetric", "--frames", "0"},
   };

@@ -255,6 +255,18 @@ TEST(AnatomyView, LegendsNameEachMuscleOnce) {
   EXPECT_EQ(legend[0].name, "masseter");
 }
 
+TEST(AnatomyView, MusclesMoveWithTheTetsOfATake) {
+  const HeadTemplate head = block_head();
+  Take take = rest_take(head);
+  TakeFrame& frame = take.frames.front();
+  frame.volume = head.volume.V.cast<float>();
+  frame.volume.col(1).array() += 0.004F;
+  const HeadViewOptions options = with_style("muscles");
+  const Scene rest = head_scene(head, options), moved = head_scene(take, frame, options, &head);
+  const MatrixX3d by = find(moved, "masseterLeft")->mesh.V - find(rest, "masseterLeft")->mesh.V;
+  EXPECT_LT((by.rowwise() - Eigen::RowVector3d(0, 0.004, 0)).cwiseAbs().maxCoeff(), 1e-6);
+}
+
 TEST(AnatomyView, TakesNeedTheirHead) {
   const HeadTemplate head = block_head();
   Take take = rest_take(head);

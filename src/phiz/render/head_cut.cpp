@@ -136,9 +136,10 @@ void add_soft_sections(Scene& scene, const PosedHead& posed, const HeadViewOptio
     }
   }
   if (!tissue || options.cut_tets) return;
+  const TissueMotion motion(posed);
   for (const ShownMuscle& shown : shown_muscles(*posed.head, options)) {
     if (posed.head->muscles[shown.row].surface.F.rows() == 0) continue;
-    add_section(scene, muscle_belly(posed, shown, options), colour_of(shown, options), plane,
+    add_section(scene, muscle_belly(posed, motion, shown, options), colour_of(shown, options), plane,
                 muscle_lift + next_muscle * shown.row);
   }
 }

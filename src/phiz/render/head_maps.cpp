@@ -49,7 +49,7 @@ Material painted_material() {
   return m;
 }
 
-/// Positions of the volume's vertices with its skin where the drawn skin is now.
+/// The contact region of every vertex of the drawn skin; -1 none.
 VectorXi region_of_skin(const HeadTemplate& head) {
   const Eigen::Index n = head.skin.V.rows();
   VectorXi row = VectorXi::Constant(head.volume.V.rows(), -1);

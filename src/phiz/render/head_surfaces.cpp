@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "phiz/core/error.h"
+#include "phiz/core/parallel.h"
+#include "phiz/geometry/spatial_query.h"
 #include "phiz/geometry/surface.h"
 #include "phiz/render/head_paint.h"
 #include "phiz/render/materials.h"
@@ -137,11 +139,19 @@ Surface veil(Surface skin, double opacity) {
 
 /// The kept part of the skin with its thickness at the rim and what lies under it on the inside.
 void add_peeled_skin(Scene& scene, const Surface& skin, const CutPlane& plane) {
-  constexpr double thickness = 0.0018;  // metres
+  constexpr double thickness = 0.0018, start = 1e-5;  // metres
   Surface inside;
   inside.name = "under the skin";
   inside.mesh = skin.mesh;
-  inside.mesh.V -= thickness * vertex_normals(skin.mesh.V, skin.mesh.F);
+  const MatrixX3d normals = vertex_normals(skin.mesh.V, skin.mesh.F);
+  const SurfaceQuery query(skin.mesh);
+  VectorXd depth(skin.mesh.V.rows());
+  parallel_for(skin.mesh.V.rows(), [&](std::ptrdiff_t v) {
+    const Vector3d p = skin.mesh.V.row(v), in = -normals.row(v).transpose();
+    const auto opposite = query.first_hit(p + start * in, in, 0, 4 * thickness);  // thin lobes and lids have less
+    depth[v] = opposite ? std::min(thickness, 0.35 * opposite->t) : thickness;
+    inside.mesh.V.row(v) += depth[v] * in.transpose();
+  });
   inside.mesh.F.col(1).swap(inside.mesh.F.col(2));
   inside.material = section_material();
   inside.material.albedo = tissue_colour::flesh;
@@ -153,6 +163,11 @@ void add_peeled_skin(Scene& scene, const Surface& skin, const CutPlane& plane) {
   rim.mesh.F.conservativeResize(2 * faces, 3);
   rim.mesh.F.bottomRows(faces) = (inside.mesh.F.array() + static_cast<int>(n)).matrix();
   rim = cap(rim, plane);
+  // Where skin lies against skin, nothing is under it that could be seen.
+  std::vector<int> apart;
+  for (int f = 0; f < faces; ++f)
+    if (depth(skin.mesh.F.row(f)).minCoeff() > 0.2 * thickness) apart.push_back(f);
+  inside.mesh.F = MatrixX3i(inside.mesh.F(apart, Eigen::all));
   rim.material = section_material();
   rim.material.albedo = tissue_colour::skin;
   for (const Surface& s : {cut_surface(skin, plane), cut_surface(inside, plane), rim})
@@ -189,15 +204,14 @@ Scene build_scene(const PosedHead& posed, const HeadViewOptions& options) {
 
   for (std::size_t i = 0; i < posed.parts->size(); ++i) {
     const bool bone = is_bone((*posed.parts)[i]);
-    if (bone ? inside && !maps : true) scene.surfaces.push_back(part_surface(posed, i, coloured));
+    if (bone && (!inside || maps)) continue;
+    Surface part = part_surface(posed, i, coloured);
+    if (bone && style == HeadStyle::fibres) part.material.albedo *= 0.45;  // white fibres stand out
+    scene.surfaces.push_back(std::move(part));
   }
   if (style == HeadStyle::muscles || (style == HeadStyle::anatomy && posed.head != nullptr))
     add_muscles(scene, posed, options);
-  if (style == HeadStyle::fibres)
-    for (const ShownMuscle& muscle : shown_muscles(*posed.head, options)) {
-      Surface tubes = fibre_tubes(posed, muscle, options, 0.0004, !options.muscle_colours);
-      if (tubes.mesh.F.rows() > 0) scene.surfaces.push_back(std::move(tubes));
-    }
+  if (style == HeadStyle::fibres) add_fibres(scene, posed, options);
   if (style == HeadStyle::attachments) add_attachments(scene, posed);
   if (style == HeadStyle::contacts) add_contacts(scene, posed, options);
   return scene;

@@ -13,7 +13,6 @@
 #include "phiz/core/error.h"
 #include "phiz/core/nearest_words.h"
 #include "phiz/core/parallel.h"
-#include "phiz/geometry/spatial_query.h"
 #include "phiz/render/materials.h"
 #include "phiz/render/palette.h"
 
@@ -28,14 +27,6 @@ std::string plain(std::string_view name) {
     if (std::isalnum(static_cast<unsigned char>(c)) != 0)
       letters += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return letters;
-}
-
-/// Points of the head at rest, moved with the tissue.
-MatrixX3d carried(const PosedHead& posed, const MatrixX3d& points) {
-  const TetMesh& volume = posed.head->volume;
-  if (posed.volume_now.rows() == 0 || volume.T.rows() == 0 || posed.volume_now == volume.V) return points;
-  const SparseMatrixd weights = interpolation_matrix(TetQuery(volume).nearest_all(points), volume.T, volume.V.rows());
-  return points + weights * (posed.volume_now - volume.V);
 }
 
 /// The line a muscle follows at one place.
@@ -64,15 +55,17 @@ std::vector<FibreSample> fibre_samples(const HeadTemplate& head, const Muscle& m
   return samples;
 }
 
-/// The samples near p, weighted by the inverse fourth power of their distance.
+/// The samples near p, weighted by the inverse fourth power of their distance: the direction from close by, the
+/// distance to the ends from farther off, so that a single fibre that ends early does not count.
 FibreSample blended(const std::vector<FibreSample>& samples, const Vector3d& p) {
-  constexpr double blur = 0.0012;  // metres
+  constexpr double blur = 0.0012, wide_blur = 0.005;  // metres
   FibreSample mean{p, Vector3d::Zero(), 0, 0};
   double total = 0;
   for (const FibreSample& s : samples) {
-    const double near = 1 / ((s.position - p).squaredNorm() + blur * blur), w = near * near;
+    const double squared = (s.position - p).squaredNorm(), near = 1 / (squared + blur * blur),
+                 wide = 1 / (squared + wide_blur * wide_blur), w = wide * wide;
     total += w;
-    mean.direction += w * s.direction;
+    mean.direction += near * near * s.direction;
     mean.from_origin += w * s.from_origin;
     mean.to_insertion += w * s.to_insertion;
   }
@@ -86,6 +79,12 @@ FibreSample blended(const std::vector<FibreSample>& samples, const Vector3d& p) 
 double tendon_share(double distance, double reach) {
   const double t = std::clamp(1 - distance / reach, 0.0, 1.0);
   return t * t * (3 - 2 * t);
+}
+
+/// Muscles under skin that is left on are not shown: skin is thin, and they may come too close to it.
+void push_peeled(Scene& scene, Surface muscle, const std::optional<CutPlane>& peel) {
+  if (peel) muscle = cut_surface(muscle, {peel->point, -peel->normal});
+  if (muscle.mesh.F.rows() > 0) scene.surfaces.push_back(std::move(muscle));
 }
 
 /// Mesh of tubes of six sides round polylines.
@@ -130,6 +129,19 @@ void copy_rows(const Rows& rows, Matrix& matrix) {
 
 }  // namespace
 
+TissueMotion::TissueMotion(const PosedHead& posed) {
+  const TetMesh& volume = posed.head->volume;
+  if (posed.volume_now.rows() == 0 || volume.T.rows() == 0 || posed.volume_now == volume.V) return;
+  tets_.emplace(volume);
+  T_ = &volume.T;
+  moved_ = posed.volume_now - volume.V;
+}
+
+MatrixX3d TissueMotion::operator()(const MatrixX3d& points) const {
+  if (!tets_) return points;
+  return points + interpolation_matrix(tets_->nearest_all(points), *T_, moved_.rows()) * moved_;
+}
+
 std::string muscle_stem(const std::string& name) {
   for (const std::string_view side : {"Left", "Right"})
     if (name.size() > side.size() && name.ends_with(side)) return name.substr(0, name.size() - side.size());
@@ -169,18 +181,19 @@ Vector3d colour_of(const ShownMuscle& muscle, const HeadViewOptions& options) {
 }
 
 Vector3d origin_colour() {
-  return {0.88, 0.80, 0.62};
+  return {0.96, 0.92, 0.80};
 }
 Vector3d insertion_colour() {
   return {0.60, 0.045, 0.035};
 }
 
-Surface muscle_belly(const PosedHead& posed, const ShownMuscle& shown, const HeadViewOptions& options) {
+Surface muscle_belly(const PosedHead& posed, const TissueMotion& motion, const ShownMuscle& shown,
+                     const HeadViewOptions& options) {
   const Muscle& muscle = posed.head->muscles[shown.row];
   Surface s;
   s.name = muscle.name;
   s.mesh.F = muscle.surface.F;
-  s.mesh.V = carried(posed, muscle.surface.V);
+  s.mesh.V = motion(muscle.surface.V);
   s.rest = muscle.surface.V;
   s.material = muscle_material();
   s.outline = 0.55;
@@ -194,20 +207,20 @@ Surface muscle_belly(const PosedHead& posed, const ShownMuscle& shown, const Hea
     s.fibre.row(v) = line.direction.transpose();
     if (muscle.ring || line.from_origin < 0 || options.muscle_colours) return;
     const double pale =
-        std::max(0.75 * tendon_share(line.from_origin, 0.007), 0.5 * tendon_share(line.to_insertion, 0.004));
+        std::max(0.8 * tendon_share(line.from_origin, 0.010), 0.5 * tendon_share(line.to_insertion, 0.007));
     s.colour.row(v) += pale * (tissue_colour::tendon.transpose() - s.colour.row(v));
   });
   return s;
 }
 
-Surface fibre_tubes(const PosedHead& posed, const ShownMuscle& shown, const HeadViewOptions& options, double radius,
-                    bool graded) {
+Surface fibre_tubes(const PosedHead& posed, const TissueMotion& motion, const ShownMuscle& shown,
+                    const HeadViewOptions& options, double radius, bool graded) {
   const Muscle& muscle = posed.head->muscles[shown.row];
   const Vector3d own = colour_of(shown, options);
   Tubes tubes;
   for (const MatrixX3d& fibre : muscle.fibres)
     if (fibre.rows() > 1)
-      tubes.add(carried(posed, fibre), radius, graded ? origin_colour() : own, graded ? insertion_colour() : own);
+      tubes.add(motion(fibre), radius, graded ? origin_colour() : own, graded ? insertion_colour() : own);
   Surface s;
   s.name = muscle.name;
   s.material = muscle_material();
@@ -219,11 +232,20 @@ Surface fibre_tubes(const PosedHead& posed, const ShownMuscle& shown, const Head
 }
 
 void add_muscles(Scene& scene, const PosedHead& posed, const HeadViewOptions& options) {
+  const TissueMotion motion(posed);
   for (const ShownMuscle& muscle : shown_muscles(*posed.head, options)) {
     const bool belly = posed.head->muscles[muscle.row].surface.F.rows() > 0;
-    Surface s = belly ? muscle_belly(posed, muscle, options) : fibre_tubes(posed, muscle, options, 0.00075, false);
-    if (s.mesh.F.rows() > 0) scene.surfaces.push_back(std::move(s));
+    push_peeled(scene,
+                belly ? muscle_belly(posed, motion, muscle, options)
+                      : fibre_tubes(posed, motion, muscle, options, 0.00075, false),
+                options.peel);
   }
+}
+
+void add_fibres(Scene& scene, const PosedHead& posed, const HeadViewOptions& options) {
+  const TissueMotion motion(posed);
+  for (const ShownMuscle& muscle : shown_muscles(*posed.head, options))
+    push_peeled(scene, fibre_tubes(posed, motion, muscle, options, 0.0004, !options.muscle_colours), options.peel);
 }
 
 }  // namespace phiz::detail
