@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/shapes.h"
+#include "phiz/anatomy/builtin/mouth/loft.h"
 #include "phiz/anatomy/fibre_field.h"
 #include "phiz/anatomy/head_template.h"
 #include "phiz/geometry/remesh.h"
@@ -22,19 +23,6 @@ inline TriangleMesh rod(const Vector3d& a, const Vector3d& b, double radius) {
   options.edge_length = 0.4 * radius;
   const Vector3d rim = Vector3d::Constant(3 * radius);
   return polygonise(distance, {a.cwiseMin(b) - rim, a.cwiseMax(b) + rim}, options);
-}
-
-inline TriangleMesh together(const std::vector<TriangleMesh>& parts) {
-  TriangleMesh all;
-  for (const TriangleMesh& part : parts) {
-    const auto n = static_cast<int>(all.V.rows());
-    const Eigen::Index m = all.F.rows();
-    all.V.conservativeResize(n + part.V.rows(), 3);
-    all.V.bottomRows(part.V.rows()) = part.V;
-    all.F.conservativeResize(m + part.F.rows(), 3);
-    all.F.bottomRows(part.F.rows()) = part.F.array() + n;
-  }
-  return all;
 }
 
 inline MuscleShape rod_muscle(const Vector3d& a, const Vector3d& b, double radius) {

@@ -18,7 +18,6 @@ namespace {
 using test::flesh_block;
 using test::rod;
 using test::rod_muscle;
-using test::together;
 
 double degrees_between(const Vector3d& a, const Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::numbers::pi;
@@ -67,7 +66,7 @@ TEST(Fibres, of_a_thin_slanted_sheet_run_along_it) {
     shape.insertion.row(i) = (0.0009 * i * side + 0.03 * along).transpose();
     rows.push_back(rod(shape.origin.row(i), shape.insertion.row(i), 0.0006));
   }
-  shape.surface = together(rows);
+  shape.surface = joined(rows);
   const FibreField field(shape);
   const auto middle = [&](const Vector3d& p) { return std::abs(p.dot(along) - 0.015) < 0.01; };
   EXPECT_LT(angles(
@@ -106,7 +105,7 @@ TEST(Fibres, of_a_ring_in_arcs_go_round_it_too) {
     };
     for (int i = 0; i < 8; ++i) arcs.push_back(rod(at(0.06 + 0.11 * i), at(0.06 + 0.11 * (i + 1)), 0.0016));
   }
-  shape.surface = together(arcs);
+  shape.surface = joined(arcs);
   const FibreField field(shape);
   const auto round = [](const Vector3d& p) { return Vector3d(Vector3d::UnitZ().cross(p)); };
   EXPECT_LT(angles(field, round, anywhere).back(), 30);
@@ -120,7 +119,7 @@ TEST(Fibres, strands_with_gaps_make_one_muscle) {
     strands.push_back(
         rod(i == 1 ? Vector3d(0.012, start.y(), 0) : start, i == 3 ? Vector3d(0.018, end.y(), 0) : end, 0.0007));
   }
-  MuscleShape shape{"bundle", together(strands), {}, {}};
+  MuscleShape shape{"bundle", joined(strands), {}, {}};
   shape.origin = MatrixX3d::Zero(5, 3);
   for (int i = 0; i < 5; ++i) shape.origin(i, 1) = 0.0028 * i;
   shape.insertion = shape.origin.rowwise() + Eigen::RowVector3d(0.03, 0, 0);
@@ -225,8 +224,8 @@ TEST(Fractions, lie_in_flesh_only) {
 
 TEST(Fibres, a_surface_that_is_no_manifold_is_replaced_by_that_of_its_voxels) {
   // Two boxes that share an edge.
-  TriangleMesh boxes =
-      together({test::box({0, 0, 0}, {0.01, 0.004, 0.004}), test::box({0, 0.004, 0.004}, {0.01, 0.008, 0.008})});
+  TriangleMesh boxes = joined(
+      std::vector{test::box({0, 0, 0}, {0.01, 0.004, 0.004}), test::box({0, 0.004, 0.004}, {0.01, 0.008, 0.008})});
   boxes.F = (boxes.F.array() == 8).select(6, (boxes.F.array() == 9).select(7, boxes.F));
   MuscleShape shape{"boxes", boxes, {}, {}};
   shape.origin = Vector3d(0, 0.004, 0.004).transpose();

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <iterator>
 #include <memory>
 #include <set>
@@ -112,6 +113,20 @@ TEST(MuscleTable, KnowsEveryMuscleThatAnExpressionShortens) {
       });
       EXPECT_TRUE(listed) << facts->stem << " should list " << recipe.name;
     }
+}
+
+TEST(MuscleTable, IsPrintedInTheDocumentation) {
+  std::ifstream file("docs/anatomy.md");
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  ASSERT_FALSE(page.empty()) << "run in the source folder";
+  for (const MuscleFacts& m : muscle_table()) {
+    const std::string form = m.form == MuscleForm::ring ? "ring" : m.form == MuscleForm::sheet ? "sheet" : "spindle";
+    std::string row = "| " + std::string(m.stem) + " | " + std::string(m.latin) + " | " + (m.paired ? "2" : "1") +
+                      " | " + form + " | " + (m.origin_on_bone ? "bone" : "soft tissue");
+    for (const std::string_view column : {m.units, m.shapes, m.parts_left, m.parts_right})
+      row += " | " + std::string(column);
+    EXPECT_NE(page.find(row + " |"), std::string::npos) << "docs/anatomy.md lacks the line\n" << row << " |";
+  }
 }
 
 }  // namespace

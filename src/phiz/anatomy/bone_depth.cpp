@@ -16,6 +16,7 @@
 namespace phiz {
 namespace {
 
+constexpr int least_free = 3;  // directions; fewer: a look into the mouth or a nostril
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Directions spread evenly over the sphere (Fibonacci).
@@ -38,9 +39,8 @@ MatrixX3i outer_triangles(const TriangleMesh& skin) {
   parallel_for(skin.F.rows(), [&](std::ptrdiff_t f) {
     const Vector3d normal = normals.row(f);
     const Vector3d start = skin.V(skin.F.row(f), Eigen::all).colwise().mean().transpose() + 1e-5 * normal;
-    seen[static_cast<std::size_t>(f)] = std::any_of(ways.begin(), ways.end(), [&](const Vector3d& way) {
-      return way.dot(normal) > 0.1 && !query.first_hit(start, way);
-    });
+    const auto free = [&](const Vector3d& way) { return way.dot(normal) > 0.1 && !query.first_hit(start, way); };
+    seen[static_cast<std::size_t>(f)] = std::count_if(ways.begin(), ways.end(), free) >= least_free ? 1 : 0;
   });
   std::vector<int> rows;
   for (std::size_t f = 0; f < seen.size(); ++f)

@@ -7,10 +7,12 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "phiz/anatomy/face_frame.h"
 #include "phiz/anatomy/fibres.h"
+#include "phiz/anatomy/muscle_table.h"
 #include "phiz/core/parallel.h"
 #include "phiz/geometry/operators.h"
 #include "phiz/geometry/spatial_query.h"
@@ -44,12 +46,49 @@ Vector3d ellipse_tangent(const Principal& p, const Vector3d& x) {
   return (p.axes.col(1) * along - p.axes.col(2) * across).stableNormalized();
 }
 
-Vector3d own_axis(const Muscle& muscle, const Principal& p) {
-  constexpr double spindle = 3;
-  if (p.variance[2] >= spindle * p.variance[1] || muscle.fibres.empty()) return p.axes.col(2);
+/// From end to end of the whole muscle.
+Vector3d long_axis(const Muscle& muscle, const Principal& p) {
+  constexpr double slender = 3;
+  const MuscleFacts* facts = find_muscle_facts(muscle.name);
+  const bool spindle = facts != nullptr ? facts->form == MuscleForm::spindle : p.variance[2] >= slender * p.variance[1];
+  if (spindle || muscle.fibres.empty()) return p.axes.col(2);
   Vector3d way = Vector3d::Zero();
   for (const MatrixX3d& fibre : muscle.fibres) way += (fibre.row(fibre.rows() - 1) - fibre.row(0)).transpose();
   return way.stableNormalized();
+}
+
+/// The axis at each row of `points`: between the centres of the thirds of the volume along the long axis; that axis
+/// itself where the muscle is about as broad as it is long.
+MatrixX3d own_axes(const Vector3d& along, const Principal& p, const MatrixX3d& points, const VectorXd& weights) {
+  constexpr double elongated = 2;
+  const Matrix3d covariance = p.axes * p.variance.asDiagonal() * p.axes.transpose();
+  const Matrix3d across = Matrix3d::Identity() - along * along.transpose();
+  const double breadth = (across * covariance * across).norm();  // close to its largest eigenvalue, as sheets are thin
+  const MatrixX3d straight = along.transpose().replicate(points.rows(), 1);
+  if (along.dot(covariance * along) < elongated * breadth) return straight;
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(points.rows()));
+  std::iota(order.begin(), order.end(), 0);
+  const VectorXd place = points * along;
+  std::sort(order.begin(), order.end(), [&place](Eigen::Index a, Eigen::Index b) { return place[a] < place[b]; });
+  std::vector<int> third(order.size());
+  MatrixX3d centres = MatrixX3d::Zero(3, 3);
+  Vector3d sums = Vector3d::Zero();
+  double before = 0;
+  for (const Eigen::Index i : order) {
+    const int k = std::clamp(static_cast<int>(3 * (before + 0.5 * weights[i]) / weights.sum()), 0, 2);
+    third[static_cast<std::size_t>(i)] = k;
+    before += weights[i];
+    centres.row(k) += weights[i] * points.row(i);
+    sums[k] += weights[i];
+  }
+  if (sums.minCoeff() <= 0) return straight;  // hardly any tets
+  for (int k = 0; k < 3; ++k) centres.row(k) /= sums[k];
+  MatrixX3d axes(points.rows(), 3);
+  for (Eigen::Index i = 0; i < axes.rows(); ++i) {
+    const int k = third[static_cast<std::size_t>(i)];
+    axes.row(i) = (centres.row(std::min(k + 1, 2)) - centres.row(std::max(k - 1, 0))).stableNormalized();
+  }
+  return axes;
 }
 
 /// Value below which half of the weight lies.
@@ -96,11 +135,11 @@ MuscleFigures muscle_figures(const HeadTemplate& head, const Muscle& muscle) {
   weights = muscle.fraction.cwiseProduct(tet_volumes(head.volume.V, head.volume.T(muscle.tets, Eigen::all)));
   figures.volume = weights.sum();
   const Principal p = principal_axes(centres, weights);
-  const Vector3d axis = muscle.ring ? Vector3d::Zero() : own_axis(muscle, p);
+  MatrixX3d axes = own_axes(long_axis(muscle, p), p, centres, weights);
+  for (Eigen::Index i = 0; muscle.ring && i < axes.rows(); ++i) axes.row(i) = ellipse_tangent(p, centres.row(i));
   std::vector<std::pair<double, double>> angles;
   for (Eigen::Index i = 0; i < weights.size(); ++i) {
-    const Vector3d expected = muscle.ring ? ellipse_tangent(p, centres.row(i)) : axis;
-    const double along = std::min(1.0, std::abs(expected.dot(Vector3d(muscle.direction.row(i)))));
+    const double along = std::min(1.0, std::abs(axes.row(i).dot(muscle.direction.row(i))));
     angles.emplace_back(std::acos(along) * 180 / std::numbers::pi, weights[i]);
   }
   figures.angle = weighted_median(angles);

@@ -14,7 +14,7 @@ namespace phiz {
 double simulated_bone_depth(const HeadTemplate& head);
 
 /// The least depth of the vertices of the drawn skull and mandible below the drawn skin as seen from outside: its
-/// triangles from which one of 32 directions leads away freely. Infinite when there are no such parts.
+/// triangles from which at least three of 32 directions lead away freely. Infinite when there are no such parts.
 double drawn_bone_depth(const HeadTemplate& head);
 
 /// The flesh over a craniometric landmark of the thickness table: along the bone's normal up to the simulation skin.
@@ -31,11 +31,12 @@ struct MuscleFigures {
   std::string name;
   double volume = 0;          ///< that fills tets, cubic metres
   double share_in_flesh = 0;  ///< of the volume inside its surface
-  /// Median over its tets, weighted by volume, of the angle between the fibre direction and the muscle's own axis,
-  /// degrees. The axis of a spindle (first principal variance at least three times the second) is the first principal
-  /// axis of its volume; that of a sheet, which is about as broad as it is long, leads from where its fibres begin on
-  /// average to where they end. In a ring it is the tangent of the ellipse through the place that has the principal
-  /// axes of the muscle's volume.
+  /// Median over its tets, weighted by volume, of the angle between the fibre direction and the muscle's own axis
+  /// there, degrees. The long axis of a spindle (muscle_table; for other names: first principal variance at least three
+  /// times the second) is the first principal axis of its volume; that of a sheet, which may be broader than long,
+  /// leads from where its fibres begin on average to where they end. As muscles bend round the cheek and the jaw, the
+  /// own axis at a place joins the centres of the thirds of the volume, cut across the long axis, on either side of it.
+  /// In a ring it is the tangent of the ellipse through the place that has the principal axes of the muscle's volume.
   double angle = 0;
 };
 MuscleFigures muscle_figures(const HeadTemplate& head, const Muscle& muscle);

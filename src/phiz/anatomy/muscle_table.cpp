@@ -48,7 +48,7 @@ constexpr std::array table{
     MuscleFacts{"orbicularisOris", "m. orbicularis oris", single, face, ring, soft, "8 18 22 23 24 28",
                 "mouthFunnel mouthPucker mouthClose mouthRollLower mouthRollUpper mouthPress mouthShrugUpper",
                 "FMA46841", ""},
-    MuscleFacts{"depressorSepti", "m. depressor septi nasi", single, face, spindle, bone, "38 39", "mouthShrugUpper",
+    MuscleFacts{"depressorSepti", "m. depressor septi nasi", single, face, sheet, bone, "38 39", "mouthShrugUpper",
                 "FMA55609 FMA55608", ""},
     MuscleFacts{"masseter", "m. masseter", pair, jaw, sheet, bone, "26 27 31", "jawOpen jawForward",
                 "FMA49002 FMA49005", "FMA49001 FMA49004"},

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "phiz/anatomy/thickness_table.h"
 #include "phiz/geometry/spatial_query.h"
 #include "phiz/geometry/surface.h"
 #include "phiz/geometry/topology.h"
@@ -16,36 +17,40 @@ std::vector<ThicknessSite> thickness_sites(const Proportions& p) {
   const auto midline = [](const Vector2d& q) { return Vector3d(0, q.x(), q.y()); };
   const auto between = [](const Vector2d& a, const Vector2d& b, double t) { return Vector2d((1 - t) * a + t * b); };
   std::vector<ThicknessSite> sites{
-      {"vertex", midline(p.vertex), 5.0 * mm, false},
-      {"opisthocranion", midline(p.opisthocranion), 6.5 * mm, false},
-      {"trichion", midline(p.trichion), 5.0 * mm, false},
-      {"glabella", midline(p.glabella), 5.5 * mm, false},
-      {"nasion", midline(p.nasion), 6.0 * mm, false},
-      {"rhinion", midline(between(p.nasion, p.pronasale, 0.5)), 3.0 * mm, false},
-      {"subnasale", midline(p.subnasale), 12.0 * mm, false},
-      {"pogonion", midline(p.pogonion), 10.5 * mm, true},
-      {"gnathion", midline(between(p.pogonion, p.menton, 0.6)), 8.5 * mm, true},
-      {"menton", midline(p.menton), 7.0 * mm, true},
+      {"vertex", midline(p.vertex)},
+      {"opisthocranion", midline(p.opisthocranion)},
+      {"trichion", midline(p.trichion)},
+      {"glabella", midline(p.glabella)},
+      {"nasion", midline(p.nasion)},
+      {"rhinion", midline(between(p.nasion, p.pronasale, 0.5))},
+      {"subnasale", midline(p.subnasale)},
+      {"pogonion", midline(p.pogonion)},
+      {"gnathion", midline(between(p.pogonion, p.menton, 0.6))},
+      {"menton", midline(p.menton)},
   };
   const Vector3d eye = p.eye_centre, outer = p.exocanthion, zyg = p.zygion, jaw = p.gonion;
   const Vector3d chin(0.022, p.menton.x() + 2 * mm, p.menton.y() - 10 * mm);
   const std::vector<ThicknessSite> left{
-      {"frontalEminence", {0.030, p.trichion.x() - 10 * mm, p.trichion.y() - 4 * mm}, 5.0 * mm, false},
-      {"midSupraorbital", {eye.x(), p.glabella.x(), p.glabella.y() - 6 * mm}, 6.5 * mm, false},
-      {"midInfraorbital", {eye.x(), eye.y() - p.eye_radius - 8 * mm, eye.z() + 9 * mm}, 7.0 * mm, false},
-      {"alarCurvature", {p.alare.x() + 4 * mm, p.alare.y(), p.alare.z() - 8 * mm}, 9.5 * mm, false},
-      {"lateralOrbit", {outer.x() + 9 * mm, outer.y(), outer.z() - 8 * mm}, 6.5 * mm, false},
-      {"temple", {0.93 * zyg.x(), eye.y() + 18 * mm, zyg.z()}, 10.0 * mm, false},
-      {"zygion", zyg, 6.0 * mm, false},
-      {"euryon", p.euryon, 6.0 * mm, false},
-      {"midRamus", {1.12 * jaw.x(), 0.5 * jaw.y(), jaw.z() + 8 * mm}, 10.0 * mm, true},
-      {"gonion", jaw, 8.0 * mm, true},
-      {"midMandibularBorder", 0.5 * (jaw + chin), 8.5 * mm, true},
+      {"frontalEminence", {0.030, p.trichion.x() - 10 * mm, p.trichion.y() - 4 * mm}},
+      {"midSupraorbital", {eye.x(), p.glabella.x(), p.glabella.y() - 6 * mm}},
+      {"midInfraorbital", {eye.x(), eye.y() - p.eye_radius - 8 * mm, eye.z() + 9 * mm}},
+      {"alarCurvature", {p.alare.x() + 4 * mm, p.alare.y(), p.alare.z() - 8 * mm}},
+      {"lateralOrbit", {outer.x() + 9 * mm, outer.y(), outer.z() - 8 * mm}},
+      {"temple", {0.93 * zyg.x(), eye.y() + 18 * mm, zyg.z()}},
+      {"zygion", zyg},
+      {"euryon", p.euryon},
+      {"midRamus", {1.12 * jaw.x(), 0.5 * jaw.y(), jaw.z() + 8 * mm}},
+      {"gonion", jaw},
+      {"midMandibularBorder", 0.5 * (jaw + chin)},
   };
   for (const ThicknessSite& site : left) {
-    sites.push_back({site.name + "Left", site.skin, site.thickness, site.on_mandible});
-    const Vector3d image(-site.skin.x(), site.skin.y(), site.skin.z());
-    sites.push_back({site.name + "Right", image, site.thickness, site.on_mandible});
+    sites.push_back({site.name + "Left", site.skin});
+    sites.push_back({site.name + "Right", {-site.skin.x(), site.skin.y(), site.skin.z()}});
+  }
+  for (ThicknessSite& site : sites) {
+    const UsualThickness* usual = find_usual_thickness(site.name);
+    site.thickness = usual->mean;
+    site.on_mandible = usual->on_mandible;
   }
   return sites;
 }
@@ -94,7 +99,7 @@ std::vector<SkullLandmark> find_skull_landmarks(const HeadTemplate& head, const 
     SkullLandmark landmark;
     landmark.name = site.name;
     landmark.bone_vertex = best;
-    landmark.normal = normals.row(best);
+    landmark.normal = (normals.row(best).transpose() + outward).normalized();  // a corner of a coarse bone has none
     const auto hit = skin_query.first_hit(head.volume.V.row(best), landmark.normal, 0, 0.05);
     if (!hit || hit->t > 2 * site.thickness + 0.003) continue;
     landmark.thickness_mean = hit->t;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Flesh thickness at craniometric landmarks (Ichim et al. 2017, section 5.3.1; values after Stephan and Simpson 2008,
-/// doi 10.1111/j.1556-4029.2008.00852.x, rounded).
+/// Where the landmarks of the thickness table lie on the built-in head.
 #pragma once
 
 #include <string>
@@ -14,9 +13,9 @@ namespace phiz {
 /// A place on the skin and the usual thickness of the flesh under it, metres.
 struct ThicknessSite {
   std::string name;
-  Vector3d skin;     ///< on the skin, or close to it
-  double thickness;  ///< towards the bone
-  bool on_mandible;
+  Vector3d skin;         ///< on the skin, or close to it
+  double thickness = 0;  ///< towards the bone, of the table
+  bool on_mandible = false;
 };
 
 /// Sites of a person: midline ones, then left and right pairs (names end in Left or Right). At least 16.
@@ -32,9 +31,9 @@ class ThicknessField {
   std::vector<ThicknessSite> sites_;
 };
 
-/// The skull landmarks of `head`, which has its volume, carriers and skin: for each site the bone vertex below it, its
-/// normal, the thickness along the normal up to the skin, as this head has it, and a deviation of 30 % (at least
-/// 1.5 mm). Sites without bone in their place are left out.
+/// The skull landmarks of `head`, which has its volume, carriers and skin: for each site the bone vertex below it, the
+/// mean of its normal and the skin's, the thickness along the normal up to the skin, as this head has it, and a
+/// deviation of 30 % (at least 1.5 mm). Sites without bone in their place are left out.
 std::vector<SkullLandmark> find_skull_landmarks(const HeadTemplate& head, const Proportions& proportions);
 
 }  // namespace phiz

@@ -214,10 +214,15 @@ std::vector<MuscleBundle> make_muscle_bundles(const Proportions& p) {
                below = p.stomion.x() - p.labrale_inferius.x();
   all.push_back(ring("orbicularisOris", mask, {0, p.stomion.x()}, {0.93 * half, 0.75 * above, 0.8 * below},
                      {1.22 * half, above + 7 * mm, below + 6 * mm}, 4, 0.0024, 0.65));
+  // Between the maxilla above the incisors and the septum, where the nostrils are nearer than the bone.
+  const Vector2d base = p.subnasale;
   all.push_back(sheet("depressorSepti",
-                      {{mask(-4 * mm, p.subnasale.x() - 8 * mm), mask(4 * mm, p.subnasale.x() - 8 * mm)},
-                       {mask(-2 * mm, p.subnasale.x() + 2 * mm), mask(2 * mm, p.subnasale.x() + 2 * mm)}},
+                      {{Vector3d(-4 * mm, base.x() - 9 * mm, base.y() - 10 * mm),
+                        Vector3d(4 * mm, base.x() - 9 * mm, base.y() - 10 * mm)},
+                       {Vector3d(-2.5 * mm, base.x() + 1 * mm, base.y() - 2 * mm),
+                        Vector3d(2.5 * mm, base.x() + 1 * mm, base.y() - 2 * mm)}},
                       3, 0.0016, 0.15, 0.7));
+  all.back().placed = true;
   all.insert(all.end(), closers.begin(), closers.end());
   return all;
 }

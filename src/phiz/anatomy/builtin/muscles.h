@@ -20,6 +20,7 @@ struct MuscleBundle {
   double radius = 0.002;          ///< half the thickness, metres
   double origin_depth = 0.15;     ///< where the origin lies between bone (0) and skin (1)
   double insertion_depth = 0.75;  ///< where the insertion lies
+  bool placed = false;            ///< its points lie where they belong: settle_muscles leaves them
 };
 
 /// The point of a fibre that is nearest to p.

@@ -71,6 +71,7 @@ void settle_muscles(std::vector<MuscleBundle>& muscles, const HeadTemplate& head
       static_cast<std::ptrdiff_t>(muscles.size()),
       [&](std::ptrdiff_t m) {
         MuscleBundle& bundle = muscles[static_cast<std::size_t>(m)];
+        if (bundle.placed) return;
         for (MatrixX3d& fibre : bundle.fibres) {
           const Eigen::Index last = fibre.rows() - 1;
           for (Eigen::Index i = 0; i <= last; ++i) {

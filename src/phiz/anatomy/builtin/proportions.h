@@ -34,4 +34,7 @@ struct Proportions {
   } arch;
 };
 
+/// All points moved by `by`; the teeth stay.
+Proportions translated(Proportions proportions, const Vector3d& by);
+
 }  // namespace phiz

@@ -134,9 +134,11 @@ FaceGuide measure_face(const FaceKit& kit) {
       carried_over(mean, Rbf(from, to - from, RbfKernel::biharmonic, 0.01), SurfaceQuery(guide.outer_skin));
   guide.proportions.eye_centre = guide.left_eye;
   guide.proportions.eye_radius = guide.eye_radius;
-  guide.sites = thickness_sites(guide.proportions);
+  // Sites are placed in a head whose origin is midway between the condyles.
+  const Vector3d condyles(0, guide.proportions.condyle.y(), guide.proportions.condyle.z());
+  guide.sites = thickness_sites(translated(guide.proportions, -condyles));
   const SurfaceQuery skin(guide.outer_skin);
-  for (ThicknessSite& site : guide.sites) site.skin = skin.closest_point(site.skin).position;
+  for (ThicknessSite& site : guide.sites) site.skin = skin.closest_point(site.skin + condyles).position;
   return guide;
 }
 

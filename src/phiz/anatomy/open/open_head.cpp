@@ -9,6 +9,7 @@
 
 #include "phiz/anatomy/attachments.h"
 #include "phiz/anatomy/bones/implicit.h"
+#include "phiz/anatomy/builtin/muscles.h"
 #include "phiz/anatomy/contact_regions.h"
 #include "phiz/anatomy/fibres.h"
 #include "phiz/anatomy/open/face_guide.h"
@@ -99,13 +100,24 @@ void translate(HeadTemplate& head, const Vector3d& by) {
   move(head.volume.V);
   move(head.skin.V);
   for (Part& part : head.parts) move(part.mesh.V);
-  for (Muscle& muscle : head.muscles) {
-    move(muscle.surface.V);
-    for (MatrixX3d& fibre : muscle.fibres) move(fibre);
-  }
   head.jaw.centre += by;
   head.left_eye_centre += by;
   head.right_eye_centre += by;
+}
+
+void translate(MuscleShape& shape, const Vector3d& by) {
+  for (MatrixX3d* points : {&shape.surface.V, &shape.origin, &shape.insertion}) points->rowwise() += by.transpose();
+  shape.ring_centre += by;
+}
+
+/// What BodyParts3D lacks (temporalis), or has as threads only (depressor septi), is drawn as in the built-in head.
+void add_drawn_muscles(std::vector<MuscleShape>& shapes, const HeadTemplate& head, const Proportions& proportions) {
+  std::vector<MuscleBundle> bundles = make_muscle_bundles(proportions);
+  std::erase_if(bundles, [](const MuscleBundle& bundle) {
+    return !bundle.name.starts_with("temporalis") && bundle.name != "depressorSepti";
+  });
+  settle_muscles(bundles, head);
+  for (MuscleShape& shape : muscle_shapes(bundles, head)) shapes.push_back(std::move(shape));
 }
 
 }  // namespace
@@ -178,17 +190,20 @@ HeadTemplate build_open_head(const FaceKit& kit, const BodyParts& parts, const O
   head.jaw = joint_of(condyle_centres(mandible.V));
   head.left_eye_centre = guide.left_eye;
   head.right_eye_centre = guide.right_eye;
-  head.skull_landmarks = find_skull_landmarks(head, guide.proportions);
   assign_contacts(head, regions);
-
-  report("muscles");
-  head.muscles =
-      make_muscles(head.volume, part_muscles(parts, map, guide, skin, {skull, mandible}), {.widest_gap = 0.008});
 
   report("expressions");
   head.expressions = kit_expressions(kit, head.skin.V.rows(), head.jaw);
 
-  translate(head, -head.jaw.centre);
+  const Vector3d to_condyles = -head.jaw.centre;
+  translate(head, to_condyles);
+  const Proportions proportions = translated(guide.proportions, to_condyles);
+  head.skull_landmarks = find_skull_landmarks(head, proportions);
+  report("muscles");
+  std::vector<MuscleShape> shapes = part_muscles(parts, map, guide, skin, {skull, mandible});
+  for (MuscleShape& shape : shapes) translate(shape, to_condyles);
+  add_drawn_muscles(shapes, head, proportions);
+  head.muscles = make_muscles(head.volume, shapes, {.widest_gap = 0.008});
   head.attachments = find_attachments(head);
   validate(head, head.name);
   return head;

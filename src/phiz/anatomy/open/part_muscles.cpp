@@ -230,7 +230,6 @@ std::vector<MuscleShape> part_muscles(const BodyParts& parts, const SpaceMap& ma
   ring("orbicularisOculiRight", {46782, 46785}, 36, 41, {-0.3, 0, 1});
   ring("orbicularisOris", {46841}, 60, 67, {0, 0, 1});
   add("procerus", {55611, 55610});
-  add("depressorSepti", {55609, 55608});
 
   parallel_for(
       static_cast<std::ptrdiff_t>(shapes.size()),
@@ -261,11 +260,7 @@ std::vector<MuscleShape> part_muscles(const BodyParts& parts, const SpaceMap& ma
       }
     }
   }
-  for (MuscleShape& shape : shapes) {
-    if (shape.name == "procerus") set_ends_of_halves(shape, shape.surface.V.col(1));
-    if (shape.name == "depressorSepti")  // from the sides to the septum
-      set_ends_of_halves(shape, -shape.surface.V.col(0).cwiseAbs());
-  }
+  set_ends_of_halves(shapes.back(), shapes.back().surface.V.col(1));  // procerus
   return shapes;
 }
 
