@@ -110,14 +110,49 @@ void translate(MuscleShape& shape, const Vector3d& by) {
   shape.ring_centre += by;
 }
 
+/// The fan of the temporalis, which BodyParts3D lacks: from an arc on the temple to the tip of the coronoid process.
+MuscleBundle temporalis(const Proportions& p, const MatrixX3d& mandible, double side) {
+  constexpr int fibres = 15, points = 13;
+  MuscleBundle bundle;
+  bundle.radius = 0.0032;
+  bundle.origin_depth = 0.3;
+  bundle.insertion_depth = 0.3;
+  // The coronoid process: the highest point of the mandible in front of the condyle.
+  constexpr double before_condyle = 0.014;
+  Vector3d tip(0, -1, 0);
+  for (Eigen::Index v = 0; v < mandible.rows(); ++v)
+    if (side * mandible(v, 0) > 0 && mandible(v, 2) > before_condyle && mandible(v, 1) > tip.y()) tip = mandible.row(v);
+  const Vector3d front(side * 0.90 * p.exocanthion.x() + side * 0.012, p.eye_centre.y() + 0.012,
+                       p.exocanthion.z() - 0.014);
+  const Vector3d top(side * 0.88 * p.euryon.x(), p.eye_centre.y() + 0.062, 0.35 * p.exocanthion.z());
+  const Vector3d back(side * p.euryon.x(), p.eye_centre.y() + 0.026, p.tragion.z() - 0.030);
+  for (int f = 0; f < fibres; ++f) {
+    const double t = f / (fibres - 1.0);
+    const Vector3d origin =
+        (1 - t) * (1 - t) * front + 2 * t * (1 - t) * (2 * top - 0.5 * (front + back)) + t * t * back;
+    const Vector3d end = tip + Vector3d(0, -0.004, 0.004 - 0.010 * t);
+    MatrixX3d fibre(points, 3);
+    for (int i = 0; i < points; ++i) fibre.row(i) = origin + (end - origin) * i / (points - 1.0);
+    bundle.fibres.push_back(fibre);
+  }
+  return bundle;
+}
+
 /// What BodyParts3D lacks (temporalis), or has as threads only (depressor septi), is drawn as in the built-in head.
-void add_drawn_muscles(std::vector<MuscleShape>& shapes, const HeadTemplate& head, const Proportions& proportions) {
+void add_drawn_muscles(std::vector<MuscleShape>& shapes, const HeadTemplate& head, const Proportions& proportions,
+                       const MatrixX3d& mandible) {
   std::vector<MuscleBundle> bundles = make_muscle_bundles(proportions);
-  std::erase_if(bundles, [](const MuscleBundle& bundle) {
-    return !bundle.name.starts_with("temporalis") && bundle.name != "depressorSepti";
-  });
+  std::erase_if(bundles, [](const MuscleBundle& bundle) { return bundle.name != "depressorSepti"; });
+  for (const double side : {1.0, -1.0}) {
+    bundles.push_back(temporalis(proportions, mandible, side));
+    bundles.back().name = side > 0 ? "temporalis left" : "temporalis right";
+  }
   settle_muscles(bundles, head);
-  for (MuscleShape& shape : muscle_shapes(bundles, head)) shapes.push_back(std::move(shape));
+  for (MuscleShape& shape : muscle_shapes(bundles, head)) {
+    if (shape.name == "temporalis left") shape.name = "temporalisLeft";
+    if (shape.name == "temporalis right") shape.name = "temporalisRight";
+    shapes.push_back(std::move(shape));
+  }
 }
 
 }  // namespace
@@ -151,9 +186,10 @@ HeadTemplate build_open_head(const FaceKit& kit, const BodyParts& parts, const O
   mandible.V = map(mandible.V);
   constexpr double sealed = 0.3;  // of the edge length: what long triangles cannot follow
   const ScalarField cranium = distance_field(skull, sealed * plan.skull_edge);
-  std::vector<Vector3d> column;
-  for (const BodyPartName& part : optional_body_parts())
-    if (const auto found = parts.meshes.find(part.fma); found != parts.meshes.end())
+  std::vector<Vector3d> column;  // from the atlas downwards
+  constexpr int atlas = 12519, seventh_cervical = 12525;
+  for (int fma = atlas; fma <= seventh_cervical; ++fma)
+    if (const auto found = parts.meshes.find(fma); found != parts.meshes.end())
       column.emplace_back(map(found->second.V.colwise().mean()).row(0));
   constexpr double column_radius = 0.013, seam = 0.006;
   const BoneShape skull_shape{
@@ -173,7 +209,10 @@ HeadTemplate build_open_head(const FaceKit& kit, const BodyParts& parts, const O
   const SkinRegions regions = simulated_regions(skin, head.skin_sampling);
   const BoneSurfaces bones = settle_bones(
       clip_bones(skull_shape, mandible_shape, envelope(simulated, regions), bone_options), simulated, bone_options);
-  report("tetrahedra");
+  if (options.report)
+    options.report("tetrahedra between a skin of " + std::to_string(simulated.F.rows()) + ", a skull of " +
+                   std::to_string(bones.skull.F.rows()) + " and a mandible of " +
+                   std::to_string(bones.mandible.F.rows()) + " triangles");
   build_volume(head, simulated, regions.at("shoulders"), bones, options.size);
 
   report("skin maps and parts");
@@ -202,7 +241,7 @@ HeadTemplate build_open_head(const FaceKit& kit, const BodyParts& parts, const O
   report("muscles");
   std::vector<MuscleShape> shapes = part_muscles(parts, map, guide, skin, {skull, mandible});
   for (MuscleShape& shape : shapes) translate(shape, to_condyles);
-  add_drawn_muscles(shapes, head, proportions);
+  add_drawn_muscles(shapes, head, proportions, mandible.V.rowwise() + to_condyles.transpose());
   head.muscles = make_muscles(head.volume, shapes, {.widest_gap = 0.008});
   head.attachments = find_attachments(head);
   validate(head, head.name);

@@ -38,7 +38,7 @@ const std::vector<Plan>& plans() {
       {"levatorLabiiSuperioris", {46807}, {46806}, 52, {}},
       {"zygomaticusMinor", {46815}, {46814}, 52, {}},
       {"zygomaticusMajor", {46813}, {46812}, 54, {}},
-      {"levatorAnguliOris", {46824}, {46823}, 54, {}},
+      {"levatorAnguliOris", {46824}, {46823}, -1, down},
       {"risorius", {46840}, {46839}, 54, {}},
       {"buccinator", {46836}, {46835}, 54, {}},
       {"depressorAnguliOris", {46830}, {46829}, 54, {}},
@@ -56,20 +56,22 @@ int mirrored_landmark(int i) {
   return pairs.at(i);
 }
 
-/// Without what lies below `lowest`: muscles of the neck reach down to the collar bones, the bust ends above.
-TriangleMesh above(const TriangleMesh& mesh, double lowest) {
-  std::vector<int> kept;
-  for (int f = 0; f < mesh.F.rows(); ++f)
-    if (mesh.V(mesh.F(f, 0), 1) > lowest && mesh.V(mesh.F(f, 1), 1) > lowest && mesh.V(mesh.F(f, 2), 1) > lowest)
-      kept.push_back(f);
-  return remove_unused_vertices(mesh.V, mesh.F(kept, Eigen::all)).mesh;
+/// The height in the frame of the parts that the map brings to about `level`, where the part reaches below it.
+double cut_height(const TriangleMesh& part, const SpaceMap& map, double level) {
+  constexpr double near = 0.003;
+  const MatrixX3d moved = map(part.V);
+  double sum = 0;
+  int count = 0;
+  for (Eigen::Index v = 0; v < moved.rows(); ++v)
+    if (std::abs(moved(v, 1) - level) < near) sum += part.V(v, 1), ++count;
+  return count > 0 ? sum / count : -1e9;
 }
 
 /// One body out of the strands of a muscle, which lie up to 4 mm apart: gaps sealed, thin muscles made thicker by half
 /// a millimetre and more on either side (a dissected strand is thinner than a living one), few triangles.
-TriangleMesh belly(const BodyParts& parts, const std::vector<int>& fma) {
+TriangleMesh belly(const BodyParts& parts, const std::vector<int>& fma, double lowest) {
   constexpr double spacing = 0.0005, gap = 0.0020, edge = 0.0011, grown = 0.0008, thin = 1.2e-6;
-  constexpr int most_triangles = 4000;
+  constexpr int most_triangles = 4000, most_of_sheets = 12000;
   Vector3d low = Vector3d::Constant(1e9), high = -low;
   for (const int id : fma) {
     low = low.cwiseMin(parts.at(id).V.colwise().minCoeff().transpose());
@@ -79,6 +81,8 @@ TriangleMesh belly(const BodyParts& parts, const std::vector<int>& fma) {
   VoxelFlags cells(static_cast<std::size_t>(grid.count()), 0);
   for (const int id : fma) fill_inside(grid, parts.at(id), cells);
   seal_gaps(grid, gap, cells);
+  for (std::ptrdiff_t c = 0; c < grid.count(); ++c)
+    if (cells[static_cast<std::size_t>(c)] && grid.centre(c).y() < lowest) cells[static_cast<std::size_t>(c)] = 0;
   PolygoniseOptions options;
   options.edge_length = edge;
   options.projection_steps = 1;
@@ -88,7 +92,7 @@ TriangleMesh belly(const BodyParts& parts, const std::vector<int>& fma) {
   const VoxelField distance = signed_distance_field(grid, cells);
   return decimate(polygonise([&](const Vector3d& p) { return distance(p) - grow; },
                              {grid.centre(0), grid.centre(grid.count() - 1)}, options),
-                  most_triangles);
+                  volume < 5e-6 ? most_triangles : most_of_sheets);
 }
 
 /// The rows with the lowest and the highest values: a tenth of them each.
@@ -126,7 +130,7 @@ void set_ends_of_halves(MuscleShape& shape, const VectorXd& along) {
 /// corners under the corners of the mouth. Far away nothing moves.
 Rbf into_lips(const BodyParts& parts, const SpaceMap& map, const FaceGuide& guide, const BoneSolids& bones) {
   constexpr int ring = 46841, lips = 59815;
-  constexpr double middle = 0.003, under = 0.003, still = 0.028, spacing = 0.012;
+  constexpr double middle = 0.002, under = 0.003, still = 0.028, spacing = 0.012;
   const MatrixX3d V = map(parts.at(ring).V), L = map(parts.at(lips).V);
   const double parting = 0.5 * (L.col(1).minCoeff() + L.col(1).maxCoeff());
   std::vector<Vector3d> from, to;
@@ -134,16 +138,27 @@ Rbf into_lips(const BodyParts& parts, const SpaceMap& map, const FaceGuide& guid
     from.push_back(a);
     to.push_back(b);
   };
-  Eigen::Index above = -1, below = -1, left = 0, right = 0;
-  for (Eigen::Index v = 0; v < V.rows(); ++v) {
-    if (std::abs(V(v, 0)) > middle) continue;
-    if (V(v, 1) > parting && (above < 0 || V(v, 1) < V(above, 1))) above = v;
-    if (V(v, 1) < parting && (below < 0 || V(v, 1) > V(below, 1))) below = v;
+  // The edges of the ring's opening to the line where the lips meet, at five places across.
+  const auto on_line = [&guide](const std::array<std::size_t, 5>& marks, double x) {
+    for (std::size_t i = 0; i + 1 < marks.size(); ++i) {
+      const Vector3d &a = guide.landmarks[marks[i]], &b = guide.landmarks[marks[i + 1]];
+      if (x <= b.x() || i + 2 == marks.size()) return Vector3d(a + (b - a) * (x - a.x()) / (b.x() - a.x()));
+    }
+    return Vector3d(guide.landmarks[marks[0]]);
+  };
+  for (const double x : {-0.014, -0.007, 0.0, 0.007, 0.014}) {
+    Eigen::Index above = -1, below = -1;
+    for (Eigen::Index v = 0; v < V.rows(); ++v) {
+      if (std::abs(V(v, 0) - x) > middle) continue;
+      if (V(v, 1) > parting && (above < 0 || V(v, 1) < V(above, 1))) above = v;
+      if (V(v, 1) < parting && (below < 0 || V(v, 1) > V(below, 1))) below = v;
+    }
+    if (above >= 0) add(V.row(above), on_line({60, 61, 62, 63, 64}, x) + Vector3d(0, 0.0005, -under));
+    if (below >= 0) add(V.row(below), on_line({60, 67, 66, 65, 64}, x) + Vector3d(0, -0.0005, -under));
   }
+  Eigen::Index left = 0, right = 0;
   L.col(0).maxCoeff(&left);
   L.col(0).minCoeff(&right);
-  if (above >= 0) add(V.row(above), guide.landmarks[62] + Vector3d(0, 0.0005, -under));
-  if (below >= 0) add(V.row(below), guide.landmarks[66] + Vector3d(0, -0.0005, -under));
   add(L.row(left), guide.landmarks[64] + Vector3d(0, 0, -0.001));
   add(L.row(right), guide.landmarks[60] + Vector3d(0, 0, -0.001));
   const Vector3d mouth = guide.landmarks[66];
@@ -231,20 +246,19 @@ std::vector<MuscleShape> part_muscles(const BodyParts& parts, const SpaceMap& ma
   ring("orbicularisOris", {46841}, 60, 67, {0, 0, 1});
   add("procerus", {55611, 55610});
 
+  constexpr double below_chin = 0.050;
   parallel_for(
       static_cast<std::ptrdiff_t>(shapes.size()),
       [&](std::ptrdiff_t i) {
         TriangleMesh& surface = shapes[static_cast<std::size_t>(i)].surface;
-        surface = belly(parts, sources[static_cast<std::size_t>(i)]);
+        const std::vector<int>& fma = sources[static_cast<std::size_t>(i)];
+        // Muscles of the neck reach down to the collar bones; the bust ends above.
+        surface = belly(parts, fma, cut_height(parts.at(fma.front()), map, guide.landmarks[8].y() - below_chin));
         surface.V = map(surface.V);
       },
       1);
-  constexpr double below_chin = 0.050;
   const Rbf lips = into_lips(parts, map, guide, bones);
-  for (MuscleShape& shape : shapes) {
-    shape.surface.V += lips.evaluate(shape.surface.V);
-    shape.surface = above(shape.surface, guide.landmarks[8].y() - below_chin);
-  }
+  for (MuscleShape& shape : shapes) shape.surface.V += lips.evaluate(shape.surface.V);
   settle(shapes, FleshLayer(skin, bones));
 
   for (std::size_t i = 0; i < plans().size(); ++i) {
