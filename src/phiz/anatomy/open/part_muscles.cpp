@@ -153,8 +153,8 @@ Rbf into_lips(const BodyParts& parts, const SpaceMap& map, const FaceGuide& guid
       if (V(v, 1) > parting && (above < 0 || V(v, 1) < V(above, 1))) above = v;
       if (V(v, 1) < parting && (below < 0 || V(v, 1) > V(below, 1))) below = v;
     }
-    if (above >= 0) add(V.row(above), on_line({60, 61, 62, 63, 64}, x) + Vector3d(0, 0.0005, -under));
-    if (below >= 0) add(V.row(below), on_line({60, 67, 66, 65, 64}, x) + Vector3d(0, -0.0005, -under));
+    if (above >= 0) add(V.row(above), on_line({60, 61, 62, 63, 64}, x) + Vector3d(0, 0.0020, -under));
+    if (below >= 0) add(V.row(below), on_line({60, 67, 66, 65, 64}, x) + Vector3d(0, -0.0020, -under));
   }
   Eigen::Index left = 0, right = 0;
   L.col(0).maxCoeff(&left);

@@ -29,7 +29,7 @@ struct SpaceMap {
 
 struct RegistrationOptions {
   /// Smoothing of the displacements, one round each (see Rbf); from stiff to soft.
-  std::vector<double> smoothing{0.5, 0.3, 0.2, 0.1, 0.05, 0.03, 0.02, 0.02};
+  std::vector<double> smoothing{0.5, 0.3, 0.2, 0.12, 0.12, 0.12};
   double sample_spacing = 0.009;  ///< between the points of bone that are put to their depth, metres
 };
 
