@@ -58,6 +58,7 @@ void make_builtin(const BuiltinArguments& arguments) {
 void add_template(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("template", "Make or check a head template");
   verb->require_subcommand(1);
+  add_template_build(*verb);
   CLI::App* builtin = verb->add_subcommand("builtin", "Make the built-in head, or a random person of its kind");
   auto arguments = std::make_shared<BuiltinArguments>();
   builtin->add_option("--size", arguments->size, "preview (8k soft tets), standard (about 36k) or fine (150k and more)")

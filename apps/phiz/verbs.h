@@ -10,8 +10,8 @@ class App;
 namespace phiz {
 
 void add_template(CLI::App& app);
-/// Part of `template`: adds its verb `check`.
-void add_template_check(CLI::App& verb);
+void add_template_build(CLI::App& verb);  ///< part of add_template
+void add_template_check(CLI::App& verb);  ///< part of add_template
 void add_animate(CLI::App& app);
 void add_export(CLI::App& app);
 void add_inspect(CLI::App& app);

@@ -71,6 +71,7 @@ TEST(Tetrahedralise, NestedSpheresBecomeRegionsWithExactInterfaces) {
   EXPECT_EQ(faces.F.rows(), triangles);
   const TetQuality quality = tet_quality(mesh);
   EXPECT_GT(quality.min_radius_ratio, 0.05);
+  EXPECT_GT(quality.min_dihedral, 6);
 }
 
 TEST(Tetrahedralise, AHoleStaysEmptyAndItsSurfaceBecomesABoundary) {

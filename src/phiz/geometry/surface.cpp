@@ -81,4 +81,25 @@ double mean_edge_length(const MatrixX3d& V, const MatrixX3i& F) {
   return sum / static_cast<double>(E.rows());
 }
 
+TriangleMesh joined(std::span<const TriangleMesh> meshes) {
+  TriangleMesh all;
+  Eigen::Index v = 0, f = 0, uv = 0;
+  for (const TriangleMesh& m : meshes) v += m.V.rows(), f += m.F.rows(), uv += m.UV.rows();
+  all.V.resize(v, 3);
+  all.F.resize(f, 3);
+  all.UV.resize(uv, 2);
+  all.FUV.resize(uv > 0 ? f : 0, 3);
+  v = f = uv = 0;
+  for (const TriangleMesh& m : meshes) {
+    all.V.middleRows(v, m.V.rows()) = m.V;
+    all.F.middleRows(f, m.F.rows()) = m.F.array() + static_cast<int>(v);
+    if (all.UV.rows() > 0) {
+      all.UV.middleRows(uv, m.UV.rows()) = m.UV;
+      all.FUV.middleRows(f, m.FUV.rows()) = m.FUV.array() + static_cast<int>(uv);
+    }
+    v += m.V.rows(), f += m.F.rows(), uv += m.UV.rows();
+  }
+  return all;
+}
+
 }  // namespace phiz

@@ -2,6 +2,7 @@
 /// Small geometry of surfaces: triangulation of polygons, normals, areas, volume, self-intersections.
 #pragma once
 
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -28,6 +29,9 @@ double signed_volume(const MatrixX3d& V, const MatrixX3i& F);
 /// Centre of the enclosed volume.
 Vector3d volume_centroid(const MatrixX3d& V, const MatrixX3i& F);
 double mean_edge_length(const MatrixX3d& V, const MatrixX3i& F);
+
+/// All meshes as one, vertices and triangles in order.
+TriangleMesh joined(std::span<const TriangleMesh> meshes);
 
 /// Pairs of triangles that intersect other than in a shared edge or vertex, sorted. Exact predicates (CGAL).
 std::vector<std::pair<int, int>> self_intersections(const TriangleMesh& mesh);

@@ -15,6 +15,7 @@
 #include <mutex>
 
 #include "phiz/core/error.h"
+#include "phiz/geometry/improve_tets.h"
 #include "phiz/geometry/operators.h"
 #include "phiz/geometry/surface.h"
 #include "phiz/geometry/topology.h"
@@ -59,12 +60,15 @@ void check_options(const TetrahedraliseOptions& options) {
     throw Error(ErrorKind::usage, "min_dihedral must lie between 0 and 18 degrees");
   if (!(options.max_edge >= 0) || options.target_tets < 0 || options.smoothing_passes < 0)
     throw Error(ErrorKind::usage, "max_edge, target_tets and smoothing_passes must not be negative");
+  if (!(options.improve_below >= 0 && options.improve_below < 60) || !(options.insert_below >= 0))
+    throw Error(ErrorKind::usage, "improve_below must lie between 0 and 60 degrees, insert_below must not be negative");
 }
 
 /// TetGen needs all of this; crossing surfaces make it crash.
 void check_surfaces(std::span<const RegionSurface> surfaces, const Boundary& all) {
   if (surfaces.empty()) reject("tetrahedralise", "there is no surface");
   for (const auto& s : surfaces) {
+    if (!(s.give >= 0)) throw Error(ErrorKind::usage, s.name + ": the give must not be negative");
     validate(s.surface, s.name);
     require_closed_manifold(s.surface, s.name);
     const CompactMesh compact = remove_unused_vertices(s.surface.V, s.surface.F);
@@ -371,6 +375,26 @@ void check_result(std::span<const RegionSurface> surfaces, const Boundary& all, 
     mesh.region[t] = surfaces[static_cast<std::size_t>(mesh.region[t])].region;
 }
 
+/// Better tets of the same regions, with every input triangle kept, even one that parts two tets of the same tag.
+void improve(std::span<const RegionSurface> surfaces, const Boundary& all, const TetrahedraliseOptions& options,
+             TetMesh& mesh) {
+  const VectorXi component = flood(mesh.T, all.F);
+  std::vector<int> tag(static_cast<std::size_t>(component.maxCoeff()) + 1);
+  for (Eigen::Index t = 0; t < component.size(); ++t) tag[static_cast<std::size_t>(component[t])] = mesh.region[t];
+  mesh.region = component;
+  ImproveOptions how;
+  how.target = options.improve_below;
+  how.insert_below = options.insert_below;
+  how.give = VectorXd::Zero(mesh.V.rows());
+  Eigen::Index first = 0;
+  for (const auto& s : surfaces) {
+    how.give.segment(first, s.surface.V.rows()).setConstant(s.give);
+    first += s.surface.V.rows();
+  }
+  improve_tets(mesh, how);
+  for (int& region : mesh.region) region = tag[static_cast<std::size_t>(region)];
+}
+
 }  // namespace
 
 TetMesh tetrahedralise(std::span<const RegionSurface> surfaces, const TetrahedraliseOptions& options) {
@@ -386,6 +410,7 @@ TetMesh tetrahedralise(std::span<const RegionSurface> surfaces, const Tetrahedra
     std::fill_n(fixed.begin(), all.V.rows(), char{1});
     smooth_interior(mesh, fixed, options.smoothing_passes);
   }
+  if (options.improve_below > 0) improve(surfaces, all, options, mesh);
   validate(mesh, "tetrahedralise");
   return mesh;
 }

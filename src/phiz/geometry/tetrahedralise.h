@@ -20,6 +20,7 @@ struct RegionSurface {
   int region = 1;       ///< tag of the tets directly inside
   bool hole = false;    ///< leave the inside empty
   double max_edge = 0;  ///< wanted longest edge of the tets directly inside, metres; 0: as the surfaces suggest
+  double give = 0;      ///< how far each vertex may move for better tets (see ImproveOptions), metres
 };
 
 struct TetrahedraliseOptions {
@@ -29,12 +30,16 @@ struct TetrahedraliseOptions {
   /// Wanted edge length at a point (metres), <= 0 for no wish; wins over max_edge where it is smaller. Must be
   /// thread-safe.
   std::function<double(const Vector3d&)> sizing;
-  int target_tets = 0;       ///< scales the edge lengths until the tet count is within 5 % of this; 0: off
-  int smoothing_passes = 4;  ///< passes of quality-improving relocation of interior vertices afterwards
+  int target_tets = 0;        ///< scales the edge lengths until the tet count is within 5 % of this; 0: off
+  int smoothing_passes = 4;   ///< passes of quality-improving relocation of interior vertices afterwards
+  double improve_below = 12;  ///< then tets with angles below this are improved (ImproveOptions::target), degrees
+  double insert_below = 6;    ///< with new inner vertices below this, degrees; raises the count of tets a little
 };
 
 /// Tets between and inside the surfaces. The vertices of the surfaces come first, in the order given; every input
-/// triangle is a face of the result (no vertex is added on a surface). Deterministic.
+/// triangle is a face of the result (no vertex is added on a surface, and they move only where a surface has `give`).
+/// The worst dihedral angle comes out at about `insert_below` where the surfaces allow it: they must not be folded more
+/// sharply than twice that, nor come much closer to each other than a fifth of their edges. Deterministic.
 /// Throws phiz::Error(bad_input) naming the surface and triangles that are open, non-manifold, inward,
 /// self-intersecting or crossing each other; phiz::Error(failure) when the mesher gives up. Hang Si's TetGen (ACM TOMS
 /// 41, 2015).

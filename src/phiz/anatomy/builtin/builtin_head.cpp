@@ -9,7 +9,6 @@
 
 #include "phiz/anatomy/attachments.h"
 #include "phiz/anatomy/builtin/bones/bones.h"
-#include "phiz/anatomy/builtin/contact_regions.h"
 #include "phiz/anatomy/builtin/expressions/shapes.h"
 #include "phiz/anatomy/builtin/flesh_thickness.h"
 #include "phiz/anatomy/builtin/mouth/teeth.h"
@@ -17,6 +16,7 @@
 #include "phiz/anatomy/builtin/muscles.h"
 #include "phiz/anatomy/builtin/skin/eye.h"
 #include "phiz/anatomy/builtin/skin/surface.h"
+#include "phiz/anatomy/contact_regions.h"
 #include "phiz/anatomy/fibres.h"
 #include "phiz/core/error.h"
 #include "phiz/geometry/tetrahedralise.h"
@@ -24,21 +24,15 @@
 namespace phiz {
 namespace {
 
-/// What a size means: level of the skin, edge lengths of the simulated bones (metres), the range of soft tets to hit
-/// and the bound on circumradius / shortest edge to begin with.
+/// What a size means: level of the skin, edge lengths of the simulated bones (metres).
 struct SizePlan {
-  HeadSize size;
-  const char* name;
   int skin_level;
   double skull_edge, mandible_edge;
-  int soft_low, soft_high;
-  double radius_edge_ratio;
 };
 constexpr int drawn_level = 2;
 constexpr double drawn_bone_edge = 0.0022;
-constexpr std::array<SizePlan, 3> plans{{{HeadSize::preview, "preview", 0, 0.0160, 0.0100, 6500, 9500, 2.5},
-                                         {HeadSize::standard, "standard", 1, 0.0105, 0.0075, 35000, 40000, 2.5},
-                                         {HeadSize::fine, "fine", 2, 0.0055, 0.0040, 150000, 260000, 1.7}}};
+constexpr FibreOptions muscle_voxels{0.0008, 25'000};  ///< the muscles are smooth and in one piece
+constexpr std::array<SizePlan, 3> plans{{{0, 0.0160, 0.0100}, {1, 0.0105, 0.0075}, {2, 0.0055, 0.0040}}};
 
 const SizePlan& plan_of(HeadSize size) {
   return plans[static_cast<std::size_t>(size)];
@@ -68,38 +62,6 @@ BoneEnvelope envelope(const RefinedSkin& skin) {
   result.outer.conservativeResize(outer_count, 3);
   result.inner.conservativeResize(inner_count, 3);
   return result;
-}
-
-/// Which bone every vertex moves with: vertices of bone tets with their bone, the cap of the neck with the skull.
-void assign_carriers(HeadTemplate& head, const VectorXi& neck_cap) {
-  head.carrier.setZero(head.volume.V.rows());
-  for (const int v : neck_cap) head.carrier(v) = static_cast<int>(Carrier::skull);
-  for (Eigen::Index t = 0; t < head.volume.T.rows(); ++t) {
-    const int region = head.volume.region(t);
-    if (region == Tissue::flesh) continue;
-    const Carrier bone = region == Tissue::skull ? Carrier::skull : Carrier::mandible;
-    for (int k = 0; k < 4; ++k) head.carrier(head.volume.T(t, k)) = static_cast<int>(bone);
-  }
-}
-
-/// Tets between skin and bones. Rounder tets are more tets: the bound on their shape brings the number of soft tets
-/// into the plan's range.
-void build_volume(HeadTemplate& head, const SizePlan& plan, const RefinedSkin& skin, const BoneSurfaces& bones) {
-  const std::array<RegionSurface, 3> surfaces{{{"skin", {skin.mesh.V, skin.mesh.F, {}, {}}, Tissue::flesh},
-                                               {"skull", bones.skull, Tissue::skull},
-                                               {"mandible", bones.mandible, Tissue::mandible}}};
-  TetrahedraliseOptions options;
-  options.min_dihedral = 5;
-  options.radius_edge_ratio = plan.radius_edge_ratio;
-  double low = 1.2, high = 6;
-  for (int attempt = 0; attempt < 5; ++attempt) {
-    head.volume = tetrahedralise(surfaces, options);
-    assign_carriers(head, skin.regions.at("neckCap"));
-    const Eigen::Index count = soft_tets(head).size();
-    if (count >= plan.soft_low && count <= plan.soft_high) return;
-    (count > plan.soft_high ? low : high) = options.radius_edge_ratio;
-    options.radius_edge_ratio = std::sqrt(low * high);
-  }
 }
 
 JawJoint jaw_joint(const Proportions& p) {
@@ -132,16 +94,6 @@ void add_parts(HeadTemplate& head, const Proportions& p, const RefinedSkin& draw
 
 }  // namespace
 
-HeadSize head_size(const std::string& name) {
-  for (const SizePlan& plan : plans)
-    if (name == plan.name) return plan.size;
-  throw Error(ErrorKind::usage, "unknown head size '" + name + "'; use preview, standard or fine");
-}
-
-std::string head_size_name(HeadSize size) {
-  return plan_of(size).name;
-}
-
 HeadTemplate build_builtin_head(const BuiltinOptions& options) {
   const SizePlan& plan = plan_of(options.size);
   const auto report = [&options](const char* what) {
@@ -161,7 +113,7 @@ HeadTemplate build_builtin_head(const BuiltinOptions& options) {
   RefinedSkin drawn = refine(skin, drawn_level);
 
   HeadTemplate head;
-  head.name = std::string("builtin-") + plan.name;
+  head.name = "builtin-" + head_size_name(options.size);
   if (options.person && !options.identity) head.name += "-" + std::to_string(*options.person);
   head.provenance = "Made by phiz from parameters; free of third-party data.";
 
@@ -173,12 +125,10 @@ HeadTemplate build_builtin_head(const BuiltinOptions& options) {
   const BoneSurfaces bones =
       build_bones(proportions, envelope(refine(skin, std::max(1, plan.skin_level))), simulated.mesh, bone_options);
   report("tetrahedra");
-  build_volume(head, plan, simulated, bones);
-  const Eigen::Index s = simulated.mesh.V.rows();
-  head.skin_vertices = VectorXi::LinSpaced(s, 0, static_cast<int>(s) - 1);
-  head.skin_triangles = simulated.mesh.F;
+  build_volume(head, simulated.mesh, simulated.regions.at("neckCap"), bones, options.size);
 
   report("skin maps and parts");
+  const Eigen::Index s = simulated.mesh.V.rows();
   head.skin_sampling.resize(s, drawn.mesh.V.rows());
   head.skin_sampling.reserve(VectorXi::Constant(s, 1));
   for (Eigen::Index i = 0; i < s; ++i) head.skin_sampling.insert(i, i) = 1;
@@ -197,7 +147,7 @@ HeadTemplate build_builtin_head(const BuiltinOptions& options) {
   report("muscles");
   std::vector<MuscleBundle> bundles = make_muscle_bundles(proportions);
   settle_muscles(bundles, head);
-  head.muscles = make_muscles(head.volume, muscle_shapes(bundles, head));
+  head.muscles = make_muscles(head.volume, muscle_shapes(bundles, head), muscle_voxels);
   head.attachments = find_attachments(head);
   if (options.expressions) {
     report("expressions");

@@ -10,15 +10,9 @@
 
 #include "phiz/anatomy/builtin/skin/identity.h"
 #include "phiz/anatomy/head_template.h"
+#include "phiz/anatomy/head_volume.h"
 
 namespace phiz {
-
-/// Fineness: about 8k, 35k to 40k, at least 150k soft tets (flesh tets with a vertex that is free to move).
-enum class HeadSize { preview, standard, fine };
-
-/// "preview", "standard" or "fine", else phiz::Error(usage).
-HeadSize head_size(const std::string& name);
-std::string head_size_name(HeadSize size);
 
 struct BuiltinOptions {
   HeadSize size = HeadSize::standard;

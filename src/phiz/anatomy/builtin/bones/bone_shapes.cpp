@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "phiz/anatomy/builtin/bones/implicit.h"
+#include "phiz/anatomy/bones/implicit.h"
 
 namespace phiz {
 namespace {

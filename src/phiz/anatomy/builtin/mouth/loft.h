@@ -17,9 +17,6 @@ TriangleMesh loft(std::span<const MatrixX3d> rings);
 /// The vertices of loft(rings), in the same order.
 MatrixX3d loft_vertices(std::span<const MatrixX3d> rings);
 
-/// All meshes as one, vertices and triangles in order.
-TriangleMesh joined(std::span<const TriangleMesh> meshes);
-
 /// The mirror image in the plane x = 0, still outward.
 TriangleMesh mirrored(const TriangleMesh& mesh);
 

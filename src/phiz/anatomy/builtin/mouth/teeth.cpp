@@ -8,6 +8,7 @@
 #include "phiz/anatomy/builtin/mouth/crown.h"
 #include "phiz/anatomy/builtin/mouth/dentition.h"
 #include "phiz/anatomy/builtin/mouth/loft.h"
+#include "phiz/geometry/surface.h"
 
 namespace phiz {
 namespace {

@@ -8,18 +8,18 @@
 
 #include "phiz/anatomy/builtin/proportions.h"
 #include "phiz/anatomy/builtin/skin/identity.h"
+#include "phiz/anatomy/contact_regions.h"
 #include "phiz/anatomy/head_template.h"
 #include "phiz/geometry/mesh.h"
 
 namespace phiz {
 
-/// Named vertex sets and ordered loops. Sets (ascending): upperLip, lowerLip, upperLipInner, lowerLipInner, mouthBag,
-/// oralRoof, oralFloor, leftUpperLid, leftLowerLid, leftSocket, leftNostril, leftEar, leftBrow, leftCheek (and
-/// right...), nose, scalp, forehead, chin, neck, neckCap, jawLine. Loops (in order): "loop:upperLipLine" and
-/// "loop:lowerLipLine" from the right corner of the mouth to the left one along the parting; "loop:leftUpperLidMargin"
-/// and "loop:leftLowerLidMargin" from the inner to the outer canthus along the outer edge of the lid margin (and
-/// right...).
-using SkinRegions = std::map<std::string, VectorXi>;
+/// Regions here (SkinRegions): named vertex sets and ordered loops. Sets (ascending): upperLip, lowerLip,
+/// upperLipInner, lowerLipInner, mouthBag, oralRoof, oralFloor, leftUpperLid, leftLowerLid, leftSocket, leftNostril,
+/// leftEar, leftBrow, leftCheek (and right...), nose, scalp, forehead, chin, neck, neckCap, jawLine. Loops (in order):
+/// "loop:upperLipLine" and "loop:lowerLipLine" from the right corner of the mouth to the left one along the parting;
+/// "loop:leftUpperLidMargin" and "loop:leftLowerLidMargin" from the inner to the outer canthus along the outer edge of
+/// the lid margin (and right...).
 
 /// The control cage. It is closed, manifold, outward oriented, and has the same faces for every person. Its limit
 /// surface (Catmull-Clark) is the skin; the cage itself lies a little off it.

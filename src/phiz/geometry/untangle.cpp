@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "phiz/anatomy/builtin/bones/untangle.h"
+#include "phiz/geometry/untangle.h"
 
 #include <vector>
 

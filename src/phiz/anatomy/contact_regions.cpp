@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "phiz/anatomy/builtin/contact_regions.h"
+#include "phiz/anatomy/contact_regions.h"
 
 #include <algorithm>
 #include <string>
@@ -7,6 +7,7 @@
 
 #include "phiz/core/error.h"
 #include "phiz/geometry/spatial_query.h"
+#include "phiz/geometry/topology.h"
 
 namespace phiz {
 namespace {
@@ -15,7 +16,7 @@ using Flags = std::vector<char>;
 
 const VectorXi& region(const SkinRegions& regions, const std::string& name) {
   const auto found = regions.find(name);
-  if (found == regions.end()) reject("built-in head", "the skin has no region " + name);
+  if (found == regions.end()) reject("head", "the skin has no region " + name);
   return found->second;
 }
 
@@ -50,7 +51,7 @@ ContactRegion contact_region(const std::string& name, const Flags& inside, const
 /// hidden rims reach through the roof and the floor of the oral cavity.
 void release_vertices_inside(HeadTemplate& head, const std::string& part) {
   const Part* obstacle = find_part(head, part);
-  if (obstacle == nullptr) reject("built-in head", "there is no part " + part);
+  if (obstacle == nullptr) reject(head.name, "there is no part " + part);
   const SurfaceQuery query(obstacle->mesh);
   for (ContactRegion& contact : head.contact_regions) {
     Eigen::Index kept = 0;
@@ -88,12 +89,17 @@ void assign_contacts(HeadTemplate& head, const SkinRegions& regions) {
     head.contact_regions.back().extended = true;
   }
 
-  for (const char* gums : {"upperGums", "lowerGums"}) release_vertices_inside(head, gums);
+  std::vector<std::string> hard{"upperTeeth", "lowerTeeth"};
+  for (const char* gums : {"upperGums", "lowerGums"}) {
+    const Part* part = find_part(head, gums);
+    if (part == nullptr || !is_closed(part->mesh.F)) continue;
+    release_vertices_inside(head, gums);
+    hard.emplace_back(gums);
+  }
 
   head.contact_pairs = {{"upperLip", "lowerLip"}, {"lowerLip", "upperLip"}};
   for (const char* soft : {"upperLip", "lowerLip", "leftCheek", "rightCheek"})
-    for (const char* hard : {"upperTeeth", "lowerTeeth", "upperGums", "lowerGums"})
-      head.contact_pairs.push_back({soft, hard});
+    for (const std::string& obstacle : hard) head.contact_pairs.push_back({soft, obstacle});
   for (const std::string side : {"left", "right"}) {
     head.contact_pairs.push_back({side + "UpperLid", side + "Eye"});
     head.contact_pairs.push_back({side + "LowerLid", side + "Eye"});

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// phiz template build: makes the open-anatomy head from raw data.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "options.h"
+#include "phiz/anatomy/open/open_head.h"
+#include "phiz/core/progress.h"
+#include "phiz/core/version.h"
+#include "phiz/io/container.h"
+#include "phiz/io/open_data.h"
+#include "phiz/io/output_file.h"
+#include "report.h"
+#include "verbs.h"
+
+namespace phiz {
+
+namespace {
+
+struct BuildArguments {
+  std::string ict, bodyparts3d, size = "standard", output;
+  bool fresh = false;
+  Report report;
+};
+
+/// $PHIZ_CACHE, else the user's cache folder; empty when there is none.
+std::filesystem::path cache_folder() {
+  const auto variable = [](const char* name) {
+    const char* value = std::getenv(name);
+    return std::filesystem::path(value != nullptr ? value : "");
+  };
+  if (const auto own = variable("PHIZ_CACHE"); !own.empty()) return own;
+  if (const auto caches = variable("XDG_CACHE_HOME"); !caches.empty()) return caches / "phiz";
+  const auto home = variable("HOME");
+  return home.empty() ? home : home / ".cache" / "phiz";
+}
+
+/// Where the head made of these data, in this size, by this Phiz, is kept. Empty: nowhere.
+std::filesystem::path cached_head(const BuildArguments& a) {
+  const std::filesystem::path folder = cache_folder();
+  if (folder.empty() || commit().ends_with('+')) return {};
+  return folder / fmt::format("open-{}-{}-{}-{:016x}-{:016x}.phiz", a.size, version(), commit(),
+                              fingerprint_face_kit(a.ict), fingerprint_body_parts(a.bodyparts3d));
+}
+
+void make_open_head(const BuildArguments& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  OpenHeadOptions options;
+  options.size = head_size(arguments.size);
+  options.report = announce;
+  require_writable(arguments.output);
+  announce("look at the data");
+  const std::filesystem::path kept = cached_head(arguments);
+  std::error_code error;
+  const bool cached = !arguments.fresh && !kept.empty() && std::filesystem::exists(kept, error);
+  HeadTemplate head;
+  if (cached) {
+    head = load_head_template(kept.string());
+  } else {
+    announce("read the data");
+    const BodyParts parts = read_body_parts(arguments.bodyparts3d);
+    const FaceKit kit = read_face_kit(arguments.ict);
+    head = build_open_head(kit, parts, options);
+    if (!kept.empty()) {
+      std::filesystem::create_directories(kept.parent_path(), error);
+      if (!error) save(kept.string(), head);
+    }
+  }
+  save(arguments.output, head);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  arguments.report.print(
+      fmt::format("{}: {}, {} tets ({} soft), {} skin vertices, {} expressions, {} muscles, {:.1f} s{}\n",
+                  arguments.output, head.name, head.volume.T.rows(), soft_tets(head).size(), head.skin.V.rows(),
+                  head.expressions.size(), head.muscles.size(), seconds, cached ? " (from the cache)" : ""));
+  arguments.report.write({{"file", arguments.output},
+                          {"name", head.name},
+                          {"tets", head.volume.T.rows()},
+                          {"soft_tets", soft_tets(head).size()},
+                          {"vertices", head.volume.V.rows()},
+                          {"skin_vertices", head.skin.V.rows()},
+                          {"expressions", head.expressions.size()},
+                          {"muscles", head.muscles.size()},
+                          {"cached", cached},
+                          {"seconds", seconds}});
+}
+
+}  // namespace
+
+void add_template_build(CLI::App& verb) {
+  CLI::App* build = verb.add_subcommand("build", "Make the open-anatomy head from ICT-FaceKit and BodyParts3D");
+  auto arguments = std::make_shared<BuildArguments>();
+  build->add_option("--ict", arguments->ict, "Folder of ICT Face Model Light (plain files, or in an archive)")
+      ->required()
+      ->type_name("DIR");
+  build->add_option("--bodyparts3d", arguments->bodyparts3d, "Folder of BodyParts3D with files named FMA...")
+      ->required()
+      ->type_name("DIR");
+  build->add_option("--size", arguments->size, "preview (8k soft tets), standard (about 36k) or fine (150k and more)")
+      ->check(CLI::IsMember({"preview", "standard", "fine"}))
+      ->capture_default_str();
+  build->add_option("-o,--output", arguments->output, "The head, a .phiz file")
+      ->required()
+      ->check(phiz_name())
+      ->type_name("FILE");
+  build->add_flag("--fresh", arguments->fresh, "Build anew, even when the same head is in the cache");
+  add_report(*build, arguments->report);
+  build->footer(
+      "A head once built is kept in $PHIZ_CACHE, else in the user's cache folder, and used again for the same data.\n"
+      "Example:\n  phiz template build --ict FaceXModel --bodyparts3d bodyparts3d -o open.phiz");
+  build->callback([arguments] { make_open_head(*arguments); });
+}
+
+}  // namespace phiz

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The skin of the face kit as a head needs it: closed, lips apart, with named regions; and as a simulation needs it.
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "phiz/anatomy/open/sources.h"
+
+namespace phiz {
+
+/// The drawn skin: vertices 0 to 14061 are the face kit's, in its order; then come those of the cap of the neck.
+struct FaceKitSkin {
+  TriangleMesh mesh;  ///< closed, manifold, outward, free of self-intersections; texture coordinates of the face kit
+  std::map<std::string, VectorXi> regions;    ///< rows of mesh.V; names as in the built-in skin
+  std::vector<int> lip_line;                  ///< where outer skin and mouth meet
+  std::array<std::vector<int>, 2> lid_lines;  ///< where outer skin and eye socket meet, left and right
+};
+
+/// Throws phiz::Error(bad_input) when the mesh is not laid out as the face kit's, phiz::Error(failure) when it cannot
+/// be freed of self-intersections.
+FaceKitSkin make_face_kit_skin(const FaceKit& kit);
+
+/// The simulation skin: about `vertices` of them on the drawn skin, fine at lips, lids and nose, coarse at scalp and
+/// shoulders, free of self-intersections.
+TriangleMesh simulation_skin(const FaceKitSkin& skin, int vertices);
+
+}  // namespace phiz

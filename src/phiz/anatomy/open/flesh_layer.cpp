@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "phiz/anatomy/open/flesh_layer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "phiz/geometry/surface.h"
+
+namespace phiz {
+
+namespace {
+
+/// Triangles all of whose corners lie in mouth or eye sockets, or the others.
+MatrixX3i sheet(const FaceKitSkin& skin, bool inner) {
+  std::vector<char> member(static_cast<std::size_t>(skin.mesh.V.rows()), 0);
+  for (const char* name : {"mouthBag", "leftSocket", "rightSocket"})
+    for (const int v : skin.regions.at(name)) member[static_cast<std::size_t>(v)] = 1;
+  std::vector<int> rows;
+  for (int f = 0; f < skin.mesh.F.rows(); ++f) {
+    bool all = true;
+    for (int k = 0; k < 3; ++k) all = all && member[static_cast<std::size_t>(skin.mesh.F(f, k))];
+    if (all == inner) rows.push_back(f);
+  }
+  return skin.mesh.F(rows, Eigen::all);
+}
+
+TriangleMesh floor_of(const FaceKitSkin& skin, const BoneSolids& bones) {
+  return joined(std::array{TriangleMesh{skin.mesh.V, sheet(skin, true), {}, {}},
+                           TriangleMesh{bones.skull.V, bones.skull.F, {}, {}},
+                           TriangleMesh{bones.mandible.V, bones.mandible.F, {}, {}}});
+}
+
+}  // namespace
+
+FleshLayer::FleshLayer(const FaceKitSkin& skin, const BoneSolids& bones)
+    : outer_(sheet(skin, false)),
+      normals_(vertex_normals(skin.mesh.V, outer_)),
+      skin_(skin.mesh.V, outer_),
+      floor_(floor_of(skin, bones)) {}
+
+Vector3d FleshLayer::into_flesh(const Vector3d& p) const {
+  constexpr double over = 0.0015, under = 0.0006, deepest = 0.05;
+  const SurfacePoint near = skin_.closest_point(p);
+  Vector3d out = Vector3d::Zero();
+  for (int k = 0; k < 3; ++k) out += near.barycentric(k) * normals_.row(outer_(near.triangle, k)).transpose();
+  out.normalize();
+  const double depth = (near.position - p).dot(out);
+  const auto below = floor_.first_hit(near.position, -out, 1e-5, deepest);
+  const double thickness = below ? below->t : deepest;
+  const double least = std::min(over, 0.35 * thickness), most = thickness - std::min(under, 0.2 * thickness);
+  if (depth >= least && depth <= most) return Vector3d::Zero();
+  // Sideways offsets, at folds, are left as they are.
+  return (depth - std::clamp(depth, least, most)) * out;
+}
+
+}  // namespace phiz

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The muscles of BodyParts3D in another face: between its bones and its skin, the lip muscles inside its lips.
+#pragma once
+
+#include <vector>
+
+#include "phiz/anatomy/fibre_field.h"
+#include "phiz/anatomy/open/face_guide.h"
+#include "phiz/anatomy/open/face_kit_skin.h"
+#include "phiz/anatomy/open/registration.h"
+
+namespace phiz {
+
+/// The 33 muscles of expression of phace.md section 3 (fifteen pairs, procerus, orbicularis oris, depressor septi) and
+/// the masseters, in the frame of the face, with their origins and insertions. `bones`: skull and mandible there.
+std::vector<MuscleShape> part_muscles(const BodyParts& parts, const SpaceMap& map, const FaceGuide& guide,
+                                      const FaceKitSkin& skin, const BoneSolids& bones);
+
+}  // namespace phiz
