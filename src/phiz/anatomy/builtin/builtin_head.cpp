@@ -121,6 +121,7 @@ HeadTemplate build_builtin_head(const BuiltinOptions& options) {
   BoneOptions bone_options;
   bone_options.skull_edge = plan.skull_edge;
   bone_options.mandible_edge = plan.mandible_edge;
+  bone_options.inner_clearance = 0.0019;             // of which coarse triangles may take the half
   bone_options.joint_gap += 0.18 * plan.skull_edge;  // long triangles cut corners
   const BoneSurfaces bones =
       build_bones(proportions, envelope(refine(skin, std::max(1, plan.skin_level))), simulated.mesh, bone_options);
