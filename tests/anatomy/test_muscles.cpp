@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
-#include <memory>
 #include <set>
 #include <sstream>
 
-#include "phiz/anatomy/builtin/builtin_head.h"
+#include "anatomy/preview_head.h"
 #include "phiz/anatomy/builtin/expressions/recipes.h"
 #include "phiz/anatomy/builtin/muscles.h"
 #include "phiz/anatomy/fibres.h"
@@ -48,23 +47,11 @@ TEST(Muscles, AreMirrorImages) {
   }
 }
 
-class MusclesInAHead : public testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    BuiltinOptions options;
-    options.size = HeadSize::preview;
-    options.expressions = false;
-    head_ = std::make_unique<HeadTemplate>(build_builtin_head(options));
-  }
-  static void TearDownTestSuite() { head_.reset(); }
-  static const HeadTemplate& head() { return *head_; }
+const HeadTemplate& head() {
+  return test::preview_head();
+}
 
- private:
-  static std::unique_ptr<HeadTemplate> head_;
-};
-std::unique_ptr<HeadTemplate> MusclesInAHead::head_;
-
-TEST_F(MusclesInAHead, FillAShareOfTheFleshWithUnitFibres) {
+TEST(MusclesInAHead, FillAShareOfTheFleshWithUnitFibres) {
   const VectorXd volume = tet_volumes(head().volume.V, head().volume.T);
   VectorXd filled = VectorXd::Zero(volume.size());
   for (const Muscle& m : head().muscles) {
@@ -81,7 +68,7 @@ TEST_F(MusclesInAHead, FillAShareOfTheFleshWithUnitFibres) {
   EXPECT_NEAR(active_share(head()), 0.07, 0.02);
 }
 
-TEST_F(MusclesInAHead, AreClosedSurfacesInsideTheFlesh) {
+TEST(MusclesInAHead, AreClosedSurfacesInsideTheFlesh) {
   for (const Muscle& m : head().muscles) {
     require_closed_manifold(m.surface, m.name);
     EXPECT_GE(share_in_flesh(head().volume, m.surface), 0.95) << m.name;
@@ -92,7 +79,7 @@ TEST_F(MusclesInAHead, AreClosedSurfacesInsideTheFlesh) {
   }
 }
 
-TEST_F(MusclesInAHead, AreThoseOfTheTable) {
+TEST(MusclesInAHead, AreThoseOfTheTable) {
   std::set<std::string> names;
   for (const Muscle& m : head().muscles) names.insert(m.name);
   const std::vector<std::string> wanted = expression_muscle_names();

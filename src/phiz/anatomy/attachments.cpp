@@ -17,7 +17,7 @@ namespace phiz {
 namespace {
 
 // Reaches of the rules, metres.
-constexpr double origin_reach = 0.004, canthus_reach = 0.009, tooth_reach = 0.007, ligament_reach = 0.007;
+constexpr double origin_reach = 0.004, canthus_reach = 0.010, tooth_reach = 0.007, ligament_reach = 0.007;
 
 bool is_flesh(int carrier) {
   return carrier == static_cast<int>(Carrier::flesh);

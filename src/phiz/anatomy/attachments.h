@@ -3,28 +3,24 @@
 ///
 /// Every vertex on the surface of a bone that touches soft tissue gets the first rule that fits:
 ///
-/// | rule            | hold  | where                                               | why |
-/// |-----------------|-------|-----------------------------------------------------|------------------------------------------|
-/// | muscle origin   | pin   | within 4 mm of a fibre's first point, for muscles   | fibres arise from the periosteum |
-/// |                 |       | of expression that arise from bone                  | | | nose            | pin   |
-/// nasal bones: between the inner canthi, from the     | thin skin and procerus adhere to the     | |                 |
-/// | nasion to the tip of the bridge                     | bone; soft cover slides little           | | inner canthus
-/// | pin   | within 9 mm of the inner corners of the eyes        | medial palpebral ligament, lacrimal crest| |
-/// alveolar        | pin   | within 7 mm of the teeth                            | gingiva and mucosa bound to
-/// periosteum   | | chin            | pin   | mandible, medial of the corners of the mouth, below | mentalis, chin pad
-/// fixed to the symphysis| |                 |       | the lower teeth                                     | | |
-/// zygomatic       | pin   | within 7 mm of where zygomaticus major arises       | zygomatic retaining ligament
-/// (McGregor)  | | mandibular      | pin   | within 7 mm of where depressor anguli oris arises   | mandibular retaining
-/// ligament            | | scalp           | slide | skull, above the brows                              | loose
-/// areolar layer under the galea      | | temple          | slide | skull, below that, beside and behind the outer |
-/// temporoparietal fascia on the temporal   | |                 |       | canthi, above the mouth; back of the head |
-/// fascia                                   | | cheekbone       | slide | skull, lateral of the pupils, between eyes
-/// and mouth| prezygomatic space                       | | jaw             | slide | mandible, lateral of the corners
-/// of the mouth and   | premasseter space: platysma glides over  | |                 |       | behind them: angle,
-/// ramus, lower border             | masseter and the border                  | | elsewhere       | pin   | floor of
-/// the orbit, behind the face, under the base | deep tissue is bound                     |
+/// * pin, muscle origin: within 4 mm of a fibre's first point, for muscles of expression that arise from bone. Fibres
+///   arise from the periosteum.
+/// * pin, nose: the nasal bones, between the inner canthi from the nasion to the tip of the bridge. Skin is thin there
+///   and adheres with procerus.
+/// * pin, inner canthus: within 10 mm of the inner corners of the eyes. Medial palpebral ligament.
+/// * pin, alveolar: within 7 mm of the teeth. Gingiva and mucosa are bound to the periosteum.
+/// * pin, chin: the mandible medial of the corners of the mouth. Mentalis and the chin pad are fixed to the symphysis.
+/// * pin, zygomatic: within 7 mm of where zygomaticus major arises. Zygomatic retaining ligament (McGregor's patch).
+/// * pin, mandibular: within 7 mm of where depressor anguli oris arises. Mandibular retaining ligament.
+/// * slide, jaw: the rest of the mandible: lower border, angle, ramus. Premasseter space: platysma glides over masseter
+///   and over the border.
+/// * slide, scalp: the skull above the brows, forehead included. Loose areolar layer under the galea.
+/// * slide, temple: below that, beside and behind the outer canthi and above the mouth; back of the head.
+///   Temporoparietal fascia glides on the temporal fascia.
+/// * slide, cheekbone: lateral of the pupils, between eyes and mouth. Prezygomatic space.
+/// * pin, elsewhere: floor of the orbit, behind the face, under the base of the skull. Deep tissue is bound.
 ///
-/// Ligaments: Mendelson and Wong, "Anatomy of the aging face" (in Neligan, Plastic Surgery, 2012).
+/// Ligaments and spaces: Mendelson and Wong (2012).
 #pragma once
 
 #include <map>
@@ -35,7 +31,7 @@
 namespace phiz {
 
 /// Attachments of `head`, from its volume, carriers, simulation skin, the 68 landmarks, muscles and parts (upperTeeth,
-/// lowerTeeth, where it has them). `count_by_rule`, when given, receives how many vertices each rule of the table above
+/// lowerTeeth, where it has them). `count_by_rule`, when given, receives how many vertices each of the rules above
 /// took. Throws phiz::Error(bad_input) naming the first landmark that is missing.
 Attachments find_attachments(const HeadTemplate& head, std::map<std::string, int>* count_by_rule = nullptr);
 

@@ -9,7 +9,6 @@
 
 #include "phiz/anatomy/attachments.h"
 #include "phiz/anatomy/builtin/bones/bones.h"
-#include "phiz/anatomy/contact_regions.h"
 #include "phiz/anatomy/builtin/expressions/shapes.h"
 #include "phiz/anatomy/builtin/flesh_thickness.h"
 #include "phiz/anatomy/builtin/mouth/teeth.h"
@@ -17,6 +16,7 @@
 #include "phiz/anatomy/builtin/muscles.h"
 #include "phiz/anatomy/builtin/skin/eye.h"
 #include "phiz/anatomy/builtin/skin/surface.h"
+#include "phiz/anatomy/contact_regions.h"
 #include "phiz/anatomy/fibres.h"
 #include "phiz/core/error.h"
 #include "phiz/geometry/tetrahedralise.h"
@@ -31,6 +31,7 @@ struct SizePlan {
 };
 constexpr int drawn_level = 2;
 constexpr double drawn_bone_edge = 0.0022;
+constexpr FibreOptions muscle_voxels{0.0008, 25'000};  ///< the muscles are smooth and in one piece
 constexpr std::array<SizePlan, 3> plans{{{0, 0.0160, 0.0100}, {1, 0.0105, 0.0075}, {2, 0.0055, 0.0040}}};
 
 const SizePlan& plan_of(HeadSize size) {
@@ -120,6 +121,7 @@ HeadTemplate build_builtin_head(const BuiltinOptions& options) {
   BoneOptions bone_options;
   bone_options.skull_edge = plan.skull_edge;
   bone_options.mandible_edge = plan.mandible_edge;
+  bone_options.inner_clearance = 0.0019;             // of which coarse triangles may take the half
   bone_options.joint_gap += 0.18 * plan.skull_edge;  // long triangles cut corners
   const BoneSurfaces bones =
       build_bones(proportions, envelope(refine(skin, std::max(1, plan.skin_level))), simulated.mesh, bone_options);
@@ -146,7 +148,7 @@ HeadTemplate build_builtin_head(const BuiltinOptions& options) {
   report("muscles");
   std::vector<MuscleBundle> bundles = make_muscle_bundles(proportions);
   settle_muscles(bundles, head);
-  head.muscles = make_muscles(head.volume, muscle_shapes(bundles, head));
+  head.muscles = make_muscles(head.volume, muscle_shapes(bundles, head), muscle_voxels);
   head.attachments = find_attachments(head);
   if (options.expressions) {
     report("expressions");

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "phiz/anatomy/thickness_table.h"
 #include "phiz/geometry/spatial_query.h"
@@ -50,6 +51,7 @@ std::vector<ThicknessSite> thickness_sites(const Proportions& p) {
   for (ThicknessSite& site : sites) {
     const UsualThickness* usual = find_usual_thickness(site.name);
     site.thickness = usual->mean;
+    site.deviation = usual->deviation;
     site.on_mandible = usual->on_mandible;
   }
   return sites;
@@ -82,26 +84,32 @@ std::vector<SkullLandmark> find_skull_landmarks(const HeadTemplate& head, const 
       outward += above.barycentric(k) * skin_normals.row(skin.F(above.triangle, k)).transpose();
     outward.normalize();
     const Vector3d expected = above.position - site.thickness * outward;
-    // The bone vertex that is near the expected place and faces the skin there.
+    // The bone vertex that is near the expected place and under the site: from it one comes out of the skin close by.
     const MatrixX3i& F = site.on_mandible ? mandible : skull;
     const MatrixX3d& normals = site.on_mandible ? mandible_normals : skull_normals;
-    int best = -1;
+    SkullLandmark landmark;
+    landmark.name = site.name;
+    std::optional<RayHit> hit;
     double least = std::numeric_limits<double>::max();
     for (Eigen::Index f = 0; f < F.rows(); ++f) {
       for (int k = 0; k < 3; ++k) {
         const int v = F(f, k);
-        const double facing = normals.row(v).dot(outward);
-        const double cost = (head.volume.V.row(v).transpose() - expected).norm() * (2 - facing);
-        if (facing > 0.3 && cost < least) least = cost, best = v;
+        const Vector3d bone = head.volume.V.row(v);
+        const double facing = normals.row(v).dot(outward), near = (bone - expected).norm() * (2 - facing);
+        if (facing <= 0.3 || near >= least) continue;
+        // A corner of a coarse bone has no normal worth the name: halfway to that of the skin.
+        const Vector3d normal = (normals.row(v).transpose() + outward).normalized();
+        const auto out = skin_query.first_hit(bone, normal, 0, 0.05);
+        if (!out || out->t > site.thickness + 3 * site.deviation) continue;
+        const double cost = near + (bone + out->t * normal - above.position).norm();
+        if (cost >= least) continue;
+        least = cost;
+        hit = out;
+        landmark.bone_vertex = v;
+        landmark.normal = normal;
       }
     }
-    if (best < 0) continue;
-    SkullLandmark landmark;
-    landmark.name = site.name;
-    landmark.bone_vertex = best;
-    landmark.normal = (normals.row(best).transpose() + outward).normalized();  // a corner of a coarse bone has none
-    const auto hit = skin_query.first_hit(head.volume.V.row(best), landmark.normal, 0, 0.05);
-    if (!hit || hit->t > 2 * site.thickness + 0.003) continue;
+    if (!hit) continue;
     landmark.thickness_mean = hit->t;
     landmark.thickness_deviation = std::max(0.0015, 0.3 * hit->t);
     Eigen::Index corner = 0;

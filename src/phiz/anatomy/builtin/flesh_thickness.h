@@ -15,6 +15,7 @@ struct ThicknessSite {
   std::string name;
   Vector3d skin;         ///< on the skin, or close to it
   double thickness = 0;  ///< towards the bone, of the table
+  double deviation = 0;
   bool on_mandible = false;
 };
 
@@ -31,9 +32,10 @@ class ThicknessField {
   std::vector<ThicknessSite> sites_;
 };
 
-/// The skull landmarks of `head`, which has its volume, carriers and skin: for each site the bone vertex below it, the
-/// mean of its normal and the skin's, the thickness along the normal up to the skin, as this head has it, and a
-/// deviation of 30 % (at least 1.5 mm). Sites without bone in their place are left out.
+/// The skull landmarks of `head`, which has its volume, carriers and skin: for each site the bone vertex below it from
+/// which one comes out of the skin near the site, the mean of its normal and the skin's, the thickness along it up to
+/// the skin, as this head has it, and a deviation of 30 % (at least 1.5 mm). Sites without bone in their place, or with
+/// flesh more than three deviations thicker than usual, are left out.
 std::vector<SkullLandmark> find_skull_landmarks(const HeadTemplate& head, const Proportions& proportions);
 
 }  // namespace phiz

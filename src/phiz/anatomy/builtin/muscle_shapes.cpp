@@ -172,7 +172,7 @@ Tube tube(const MatrixX3d& fibre, double radius, const Room& room) {
 TriangleMesh surface_of(const std::vector<Tube>& tubes, double radius) {
   const TubeDistance distance(tubes);
   PolygoniseOptions options;
-  options.edge_length = std::clamp(0.5 * radius, 0.0008, 0.0014);
+  options.edge_length = std::clamp(0.6 * radius, 0.0010, 0.0018);
   options.projection_steps = 3;
   options.lipschitz = 1.3;
   const double rim = 4 * options.edge_length;
