@@ -83,13 +83,16 @@ void assign_carriers(HeadTemplate& head, const VectorXi& neck_cap) {
 /// Tets between skin and bones. Rounder tets are more tets: the bound on their shape brings the number of soft tets
 /// into the plan's range.
 void build_volume(HeadTemplate& head, const SizePlan& plan, const RefinedSkin& skin, const BoneSurfaces& bones) {
-  constexpr double bone_give = 0.0005;
-  const std::array<RegionSurface, 3> surfaces{{{"skin", {skin.mesh.V, skin.mesh.F, {}, {}}, Tissue::flesh},
-                                               {"skull", bones.skull, Tissue::skull, false, 0, bone_give},
-                                               {"mandible", bones.mandible, Tissue::mandible, false, 0, bone_give}}};
+  const auto give = [](const TriangleMesh& bone) -> VectorXd { return VectorXd::Constant(bone.V.rows(), 0.0005); };
+  const std::array<RegionSurface, 3> surfaces{
+      {{"skin", {skin.mesh.V, skin.mesh.F, {}, {}}, Tissue::flesh},
+       {"skull", bones.skull, Tissue::skull, false, 0, give(bones.skull)},
+       {"mandible", bones.mandible, Tissue::mandible, false, 0, give(bones.mandible)}}};
   TetrahedraliseOptions options;
-  options.insert_below = 8;
   options.min_dihedral = 5;
+  // Little more than is needed: where lips are thin, another mesh is another way for them to settle.
+  options.improve_below = 8;
+  options.insert_below = 5.2;
   options.radius_edge_ratio = plan.radius_edge_ratio;
   double low = 1.2, high = 6;
   for (int attempt = 0; attempt < 5; ++attempt) {
