@@ -38,7 +38,7 @@ void expect_sound(const HeadTemplate& head) {
   EXPECT_NO_THROW(validate(head, head.name));
   EXPECT_GT(tet_volumes(head.volume.V, head.volume.T).minCoeff(), 0);
   const TetQuality quality = tet_quality(head.volume);
-  EXPECT_GE(quality.min_dihedral, 6) << brief_report(quality);
+  EXPECT_GE(quality.min_dihedral, 5) << brief_report(quality);
   const TriangleMesh skin{head.volume.V.topRows(head.skin_vertices.size()), head.skin_triangles, {}, {}};
   EXPECT_TRUE(is_closed(skin.F));
   const SurfaceQuery query(skin);

@@ -186,6 +186,31 @@ TEST(ImproveTets, NamesWhatItRefuses) {
   }
 }
 
+TEST(TetShape, TheGradientFitsDifferencesWhereTheVolumeCountsToo) {
+  Random random(4);
+  int splinters = 0;
+  for (int i = 0; i < 200; ++i) {
+    Vector3d p[4];
+    for (Vector3d& q : p) q = Vector3d(random.normal(), random.normal(), random.normal());
+    if ((p[1] - p[0]).dot((p[2] - p[0]).cross(p[3] - p[0])) < 0) std::swap(p[0], p[1]);
+    const double weight = 1, h = 1e-6;
+    Vector3d gradient;
+    const double shape = tet_shape(p[0], p[1], p[2], p[3], weight, gradient);
+    EXPECT_NEAR(shape, tet_shape(p[0], p[1], p[2], p[3], weight), 1e-12);
+    splinters += shape < least_sine(p[0], p[1], p[2], p[3]) ? 1 : 0;
+    for (int k = 0; k < 3; ++k) {
+      const Vector3d d = h * Vector3d::Unit(k);
+      const double up = tet_shape(p[0] + d, p[1], p[2], p[3], weight),
+                   down = tet_shape(p[0] - d, p[1], p[2], p[3], weight);
+      if (std::abs(up + down - 2 * shape) > 1e-7) continue;  // a kink
+      EXPECT_NEAR(gradient[k], (up - down) / (2 * h), 1e-4 * (1 + gradient.norm()));
+    }
+  }
+  EXPECT_GT(splinters, 20);
+  const Vector3d a(1, 1, 1), b(1, -1, -1), c(-1, 1, -1), d(-1, -1, 1);
+  EXPECT_NEAR(std::abs(tet_shape(a, c, b, d, 0.5)), 0.5, 1e-14);
+}
+
 TEST(TetShape, LeastSineAgreesWithTheAnglesAndItsGradientWithDifferences) {
   Random random(3);
   for (int i = 0; i < 200; ++i) {

@@ -116,6 +116,25 @@ TEST(Tetrahedralise, ThinGapsAreKept) {
   EXPECT_NEAR(region_volume(mesh, 1), 1e-3 - 0.06 * 0.06 * (0.03 + 0.0299), 1e-12);
 }
 
+TEST(Tetrahedralise, OnlySurfacesWithGiveMove) {
+  // Sheets 3 mm apart with edges of up to 15 mm.
+  std::vector<RegionSurface> surfaces{{"skin", sphere({0, 0, 0}, 0.1, 3)},
+                                      {"bone", sphere({0.002, 0, 0}, 0.095, 3), 2}};
+  const Eigen::Index skin = surfaces[0].surface.V.rows(), bone = surfaces[1].surface.V.rows();
+  const TetMesh stiff = tetrahedralise(surfaces);
+  EXPECT_EQ(stiff.V.middleRows(skin, bone), surfaces[1].surface.V);
+  surfaces[1].give = VectorXd::Constant(bone, 0.001);
+  const TetMesh giving = tetrahedralise(surfaces);
+  EXPECT_EQ(giving.V.topRows(skin), surfaces[0].surface.V);
+  const double farthest = (giving.V.middleRows(skin, bone) - surfaces[1].surface.V).rowwise().norm().maxCoeff();
+  EXPECT_GT(farthest, 1e-5);
+  EXPECT_LE(farthest, 0.001 + 1e-12);
+  EXPECT_GE(tet_quality(giving).min_dihedral, tet_quality(stiff).min_dihedral);
+  EXPECT_EQ(sorted_faces(region_faces(giving).F), sorted_faces(region_faces(stiff).F));
+  surfaces[1].give = VectorXd::Constant(1, 0.001);
+  EXPECT_THROW(tetrahedralise(surfaces), Error);
+}
+
 TEST(Tetrahedralise, SizingFunctionRefinesWhereItAsks) {
   const RegionSurface skin{"skin", sphere({0, 0, 0}, 0.1, 3), 1, false, 0};
   TetrahedraliseOptions options;

@@ -49,16 +49,20 @@ std::string head_size_name(HeadSize size) {
 void build_volume(HeadTemplate& head, const TriangleMesh& skin, const VectorXi& held, const BoneSurfaces& bones,
                   HeadSize size) {
   const SizePlan& plan = plans[static_cast<std::size_t>(size)];
-  constexpr double bone_give = 0.0005;  // metres: bones may move a little for better tets, the skin may not
-  std::array<RegionSurface, 3> surfaces{{{"skin", {skin.V, skin.F, {}, {}}, Tissue::flesh},
-                                               {"skull", bones.skull, Tissue::skull, false, 0, bone_give},
-                                               {"mandible", bones.mandible, Tissue::mandible, false, 0, bone_give}}};
+  // Bones may move a little for better tets, the skin may not.
+  const auto give = [](const TriangleMesh& bone) -> VectorXd { return VectorXd::Constant(bone.V.rows(), 0.0005); };
+  std::array<RegionSurface, 3> surfaces{
+      {{"skin", {skin.V, skin.F, {}, {}}, Tissue::flesh},
+       {"skull", bones.skull, Tissue::skull, false, 0, give(bones.skull)},
+       {"mandible", bones.mandible, Tissue::mandible, false, 0, give(bones.mandible)}}};
   const auto s = static_cast<int>(skin.V.rows());
   head.skin_vertices = VectorXi::LinSpaced(s, 0, s - 1);
   head.skin_triangles = skin.F;
   TetrahedraliseOptions options;
   options.min_dihedral = 5;
-  options.insert_below = 8;
+  // Little more than is needed: where lips are thin, another mesh is another way for them to settle.
+  options.improve_below = 8;
+  options.insert_below = 5.2;
   options.radius_edge_ratio = plan.radius_edge_ratio;
   // Rounder tets are more tets: the bound on their shape brings the number of soft tets into the plan's range.
   double low = 1.2, high = 6;

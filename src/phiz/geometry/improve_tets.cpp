@@ -111,8 +111,8 @@ void work(TetComplex& complex, double target, double insert_below, int passes, I
   TetDoctor doctor(complex, target, summary);
   TetComplex best = complex;
   double least = badness(complex, insert_below);
-  for (int wait = 0; summary.passes < passes && wait < patience; ++summary.passes) {
-    const bool insert = summary.passes > 1;  // the cheap means first
+  for (int pass = 0, wait = 0; pass < passes && wait < patience; ++pass, ++summary.passes) {
+    const bool insert = pass > 1;  // the cheap means first
     bool changed = false;
     for (const int t : poor_tets(complex, target)) {
       if (!complex.tet(t).alive || !(complex.tet(t).quality < target)) continue;
@@ -134,8 +134,8 @@ void check(const TetMesh& mesh, const ImproveOptions& options) {
   if (!(options.target >= 0 && options.target < 60) || !(options.insert_below >= 0) || options.passes < 0)
     throw Error(ErrorKind::usage,
                 "the target must lie between 0 and 60 degrees, insert_below and passes must not be negative");
-  if (options.give.size() > 0 && !(options.give.minCoeff() >= 0))
-    throw Error(ErrorKind::usage, "the give of a vertex must not be negative");
+  if (options.give.size() > 0 && (options.give.size() != mesh.V.rows() || !(options.give.minCoeff() >= 0)))
+    throw Error(ErrorKind::usage, "give must hold one number for each vertex, none negative");
   validate(mesh, "improve_tets");
 }
 
@@ -155,7 +155,18 @@ ImproveSummary improve_tets(TetMesh& mesh, const ImproveOptions& options) {
   ImproveSummary summary;
   summary.below_before = count_below(complex, target);
   summary.worst_before = degrees(worst_of(complex));
+  // First round shapes, then the angles that those do not cover; angles alone where that made the worst one worse.
+  constexpr double splinter_weight = 3;
+  const double worst = worst_of(complex);
+  const TetComplex start = complex;
+  complex.measure_with(splinter_weight);
   work(complex, target, insert_below, options.passes, summary);
+  complex.measure_with(angles_only);
+  work(complex, insert_below, insert_below, options.passes, summary);
+  if (worst_of(complex) < worst) {
+    complex = start;
+    work(complex, target, insert_below, options.passes, summary);
+  }
   summary.below_after = count_below(complex, target);
   summary.worst_after = degrees(worst_of(complex));
   for (int v = 0; v < surface; ++v)

@@ -15,7 +15,7 @@ struct ImproveOptions {
   double target = 12;
   /// New inner vertices only for tets below this, degrees: they cost tets.
   double insert_below = 6;
-  int passes = 20;  ///< over all such tets; fewer when none gets better any more
+  int passes = 20;  ///< over all such tets, twice; fewer when none gets better any more
   /// How far each vertex of a surface may move from where it is, metres; empty: none may. A surface keeps its
   /// triangles, so the give should be small against its edges.
   VectorXd give;

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "phiz/core/random.h"
+#include "phiz/geometry/tet_complex.h"
 #include "phiz/geometry/tetrahedralise.h"
 
 namespace phiz {
@@ -25,8 +28,7 @@ class Star {
   Quality quality(const Vector3d& p, const Quality& limit) const {
     Quality q;
     for (const int t : tets_) {
-      Vector3d corner[4];
-      for (int k = 0; k < 4; ++k) corner[k] = mesh_.T(t, k) == centre_ ? p : Vector3d(mesh_.V.row(mesh_.T(t, k)));
+      const auto corner = corners(t, p);
       const double ratio = radius_ratio(corner[0], corner[1], corner[2], corner[3]);
       q.worst = std::min(q.worst, ratio);
       q.cost += 1 / (ratio * ratio * ratio * ratio);
@@ -37,6 +39,16 @@ class Star {
 
   Quality quality(const Vector3d& p) const {
     return quality(p, {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()});
+  }
+
+  /// The worst sine of a dihedral angle.
+  double sine(const Vector3d& p) const {
+    double worst = 1;
+    for (const int t : tets_) {
+      const auto corner = corners(t, p);
+      worst = std::min(worst, least_sine(corner[0], corner[1], corner[2], corner[3]));
+    }
+    return worst;
   }
 
   Vector3d mean_of_neighbours() const {
@@ -61,6 +73,13 @@ class Star {
   }
 
  private:
+  std::array<Vector3d, 4> corners(int t, const Vector3d& p) const {
+    std::array<Vector3d, 4> corner;
+    for (int k = 0; k < 4; ++k)
+      corner[static_cast<std::size_t>(k)] = mesh_.T(t, k) == centre_ ? p : Vector3d(mesh_.V.row(mesh_.T(t, k)));
+    return corner;
+  }
+
   const TetMesh& mesh_;
   const std::vector<int>& tets_;
   int centre_;
@@ -70,7 +89,8 @@ constexpr double good_enough = 0.5;  // stars whose worst tet is this good are l
 
 }  // namespace
 
-int smooth_interior(TetMesh& mesh, const std::vector<char>& fixed, int passes) {
+int smooth_interior(TetMesh& mesh, const std::vector<char>& fixed, int passes, double kept_angle) {
+  const double kept_sine = std::sin(kept_angle * std::numbers::pi / 180);
   std::vector<std::vector<int>> tets_of(static_cast<std::size_t>(mesh.V.rows()));
   for (int t = 0; t < mesh.T.rows(); ++t)
     for (int k = 0; k < 4; ++k) tets_of[static_cast<std::size_t>(mesh.T(t, k))].push_back(t);
@@ -86,9 +106,10 @@ int smooth_interior(TetMesh& mesh, const std::vector<char>& fixed, int passes) {
       const Star::Quality before = star.quality(start);
       if (before.worst > good_enough) continue;
       Star::Quality reached = before;
+      const double floor = kept_angle > 0 ? std::min(kept_sine, star.sine(start)) : 0;
       const auto attempt = [&](const Vector3d& p) {
         const Star::Quality q = star.quality(p, reached);
-        if (!q.is_better_than(reached)) return false;
+        if (!q.is_better_than(reached) || (floor > 0 && star.sine(p) < floor)) return false;
         reached = q;
         best = p;
         return true;

@@ -85,6 +85,44 @@ double least_sine(const Vector3d& a, const Vector3d& b, const Vector3d& c, const
   return least;
 }
 
+namespace {
+
+/// 6 sqrt(2) volume / (root mean square edge)^3: 1 regular, 0 flat (Parthasarathy, Graichen and Hathaway 1994).
+struct VolumeLength {
+  Vector3d around;  ///< sum of the edges from a
+  double squared;   ///< mean square edge
+  double value;
+
+  explicit VolumeLength(const Shape& s) : around(s.u + s.v + s.w) {
+    squared = (s.u.squaredNorm() + s.v.squaredNorm() + s.w.squaredNorm() + (s.v - s.u).squaredNorm() +
+               (s.w - s.u).squaredNorm() + (s.w - s.v).squaredNorm()) /
+              6;
+    value = std::sqrt(2.0) * s.six_volume / (squared * std::sqrt(squared));
+  }
+  Vector3d gradient(const Shape& s) const {
+    return -std::sqrt(2.0) / (squared * std::sqrt(squared)) * s.normal[0] + 0.5 * value / squared * around;
+  }
+};
+
+}  // namespace
+
+double tet_shape(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d, double weight) {
+  const double sine = least_sine(a, b, c, d);
+  if (!(sine > 0) || weight == angles_only) return sine;
+  return std::min(sine, weight * VolumeLength(Shape(a, b, c, d)).value);
+}
+
+double tet_shape(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d, double weight,
+                 Vector3d& gradient) {
+  const double sine = least_sine(a, b, c, d, gradient);
+  if (!(sine > 0) || weight == angles_only) return sine;
+  const Shape s(a, b, c, d);
+  const VolumeLength measure(s);
+  if (sine <= weight * measure.value) return sine;
+  gradient = weight * measure.gradient(s);
+  return weight * measure.value;
+}
+
 TetComplex::TetComplex(const TetMesh& mesh, const VectorXd& give)
     : give_(static_cast<std::size_t>(mesh.V.rows()), 0.0),
       on_surface_(static_cast<std::size_t>(mesh.V.rows()), 0),
@@ -94,7 +132,7 @@ TetComplex::TetComplex(const TetMesh& mesh, const VectorXd& give)
   const RegionFaces surface = region_faces(mesh);
   for (Eigen::Index f = 0; f < surface.F.rows(); ++f)
     for (int k = 0; k < 3; ++k) on_surface_[static_cast<std::size_t>(surface.F(f, k))] = 1;
-  for (Eigen::Index v = 0; v < std::min(give.size(), mesh.V.rows()); ++v) give_[static_cast<std::size_t>(v)] = give[v];
+  for (Eigen::Index v = 0; v < give.size(); ++v) give_[static_cast<std::size_t>(v)] = give[v];
   for (int t = 0; t < mesh.T.rows(); ++t) {
     const Corners v{mesh.T(t, 0), mesh.T(t, 1), mesh.T(t, 2), mesh.T(t, 3)};
     tets_.push_back({v, mesh.region[t], quality(v), true});
@@ -130,7 +168,14 @@ std::vector<int> TetComplex::tets_of_edge(int a, int b) const {
 }
 
 double TetComplex::quality(const Corners& v) const {
-  return least_sine(x(v[0]), x(v[1]), x(v[2]), x(v[3]));
+  return tet_shape(x(v[0]), x(v[1]), x(v[2]), x(v[3]), weight_);
+}
+
+void TetComplex::measure_with(double weight) {
+  weight_ = weight;
+  settle();
+  for (Tet& t : tets_)
+    if (t.alive) t.quality = quality(t.v);
 }
 
 double TetComplex::worst(std::span<const int> tets) const {

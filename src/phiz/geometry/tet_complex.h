@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -17,17 +18,25 @@ double least_sine(const Vector3d& a, const Vector3d& b, const Vector3d& c, const
 /// The same with its gradient by `a`.
 double least_sine(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d, Vector3d& gradient);
 
+/// The quality that is improved: least_sine, or the volume-length measure (1 for a regular tet) times `weight` where
+/// that is less. The second tells of splinters, which are thin but have fair angles.
+double tet_shape(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d, double weight);
+/// The same with its gradient by `a`.
+double tet_shape(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d, double weight,
+                 Vector3d& gradient);
+inline constexpr double angles_only = std::numeric_limits<double>::infinity();
+
 /// Tets that can be exchanged for others, with the way back. A surface is what bounds the mesh or parts two regions.
 class TetComplex {
  public:
   struct Tet {
     Corners v;
     int region;
-    double quality;  ///< least_sine; below every real one when the tet is gone
+    double quality;  ///< tet_shape
     bool alive;
   };
 
-  /// `give`: how far each vertex of a surface may move, or empty.
+  /// `give`: how far each vertex may move when it lies on a surface, or empty.
   TetComplex(const TetMesh& mesh, const VectorXd& give);
 
   int vertices() const { return static_cast<int>(x_.size()); }
@@ -46,6 +55,9 @@ class TetComplex {
   /// Tets with both vertices, in the order of tets_of(a).
   std::vector<int> tets_of_edge(int a, int b) const;
   double quality(const Corners& v) const;
+  double weight() const { return weight_; }
+  /// Another weight of tet_shape from here on; angles_only at first.
+  void measure_with(double weight);
   double worst(std::span<const int> tets) const;
 
   void move(int v, const Vector3d& to);
@@ -72,6 +84,7 @@ class TetComplex {
   void link(int t);
   void unlink(int t);
 
+  double weight_ = angles_only;
   std::vector<Vector3d> x_, home_;
   std::vector<double> give_;
   std::vector<char> on_surface_;

@@ -21,7 +21,7 @@ struct Sample {
 /// The tets round one vertex with that vertex on trial.
 class Star {
  public:
-  Star(const TetComplex& complex, int v) {
+  Star(const TetComplex& complex, int v) : weight_(complex.weight()) {
     for (const int t : complex.tets_of(v)) {
       const Corners& corners = complex.tet(t).v;
       const int k = corner_of(corners, v);
@@ -36,7 +36,7 @@ class Star {
   double worst(const Vector3d& p, double limit) const {
     double q = infinite;
     for (const auto& f : opposite_) {
-      q = std::min(q, least_sine(p, f[0], f[1], f[2]));
+      q = std::min(q, tet_shape(p, f[0], f[1], f[2], weight_));
       if (!(q > limit)) break;
     }
     return q;
@@ -46,7 +46,7 @@ class Star {
     std::vector<Sample> all;
     for (const auto& f : opposite_) {
       Sample s;
-      s.quality = least_sine(p, f[0], f[1], f[2], s.gradient);
+      s.quality = tet_shape(p, f[0], f[1], f[2], weight_, s.gradient);
       all.push_back(s);
     }
     return all;
@@ -60,6 +60,7 @@ class Star {
   }
 
  private:
+  double weight_;
   std::vector<std::array<Vector3d, 3>> opposite_;
 };
 

@@ -68,7 +68,8 @@ void check_options(const TetrahedraliseOptions& options) {
 void check_surfaces(std::span<const RegionSurface> surfaces, const Boundary& all) {
   if (surfaces.empty()) reject("tetrahedralise", "there is no surface");
   for (const auto& s : surfaces) {
-    if (!(s.give >= 0)) throw Error(ErrorKind::usage, s.name + ": the give must not be negative");
+    if (s.give.size() > 0 && (s.give.size() != s.surface.V.rows() || !(s.give.minCoeff() >= 0)))
+      throw Error(ErrorKind::usage, s.name + ": give must hold one number for each vertex, none negative");
     validate(s.surface, s.name);
     require_closed_manifold(s.surface, s.name);
     const CompactMesh compact = remove_unused_vertices(s.surface.V, s.surface.F);
@@ -388,7 +389,7 @@ void improve(std::span<const RegionSurface> surfaces, const Boundary& all, const
   how.give = VectorXd::Zero(mesh.V.rows());
   Eigen::Index first = 0;
   for (const auto& s : surfaces) {
-    how.give.segment(first, s.surface.V.rows()).setConstant(s.give);
+    if (s.give.size() > 0) how.give.segment(first, s.give.size()) = s.give;
     first += s.surface.V.rows();
   }
   improve_tets(mesh, how);
@@ -405,12 +406,16 @@ TetMesh tetrahedralise(std::span<const RegionSurface> surfaces, const Tetrahedra
   TetMesh mesh = mesh_with_target(surfaces, all, seeds, options);
   orient(mesh);
   check_result(surfaces, all, mesh);
-  if (options.smoothing_passes > 0) {
+  const auto smooth = [&](double kept_angle) {
     std::vector<char> fixed(static_cast<std::size_t>(mesh.V.rows()), 0);
     std::fill_n(fixed.begin(), all.V.rows(), char{1});
-    smooth_interior(mesh, fixed, options.smoothing_passes);
+    smooth_interior(mesh, fixed, options.smoothing_passes, kept_angle);
+  };
+  smooth(0);
+  if (options.improve_below > 0) {
+    improve(surfaces, all, options, mesh);
+    smooth(options.improve_below);
   }
-  if (options.improve_below > 0) improve(surfaces, all, options, mesh);
   validate(mesh, "tetrahedralise");
   return mesh;
 }

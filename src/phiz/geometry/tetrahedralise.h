@@ -20,7 +20,7 @@ struct RegionSurface {
   int region = 1;       ///< tag of the tets directly inside
   bool hole = false;    ///< leave the inside empty
   double max_edge = 0;  ///< wanted longest edge of the tets directly inside, metres; 0: as the surfaces suggest
-  double give = 0;      ///< how far each vertex may move for better tets (see ImproveOptions), metres
+  VectorXd give = {};  ///< how far each vertex may move for better tets (ImproveOptions::give), metres; empty: none may
 };
 
 struct TetrahedraliseOptions {
@@ -65,8 +65,8 @@ double radius_ratio(const Vector3d& a, const Vector3d& b, const Vector3d& c, con
 std::array<double, 2> dihedral_range(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d);
 
 /// Moves the vertices that are not `fixed` (n flags) and have a poor tet (radius ratio below 0.5) round them, to lower
-/// the sum of ratio^-4 there; never inverts a tet and never lowers the worst ratio round a vertex. Returns the number
-/// of moves.
-int smooth_interior(TetMesh& mesh, const std::vector<char>& fixed, int passes);
+/// the sum of ratio^-4 there; never inverts a tet and never lowers the worst ratio round a vertex, nor the worst angle
+/// (as in ImproveOptions::target) where it is below `kept_angle`, degrees. Returns the number of moves.
+int smooth_interior(TetMesh& mesh, const std::vector<char>& fixed, int passes, double kept_angle = 0);
 
 }  // namespace phiz
