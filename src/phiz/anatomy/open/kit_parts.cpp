@@ -67,6 +67,14 @@ GumSplit split_gums(const FaceKit& kit, const MatrixX3i& gums) {
   return split;
 }
 
+std::vector<int> used_vertices(const PolygonMesh& mesh, const face_kit::Range& faces) {
+  std::vector<int> rows;
+  for (int f = faces.first; f < faces.end; ++f)
+    rows.insert(rows.end(), mesh.faces[static_cast<std::size_t>(f)].begin(),
+                mesh.faces[static_cast<std::size_t>(f)].end());
+  return rows;
+}
+
 /// Slides the front of the tongue out over the lower lip; its root stays.
 MatrixX3d tongue_out(const MatrixX3d& V) {
   const double root = V.col(2).minCoeff(), tip = V.col(2).maxCoeff();
@@ -77,6 +85,24 @@ MatrixX3d tongue_out(const MatrixX3d& V) {
     D.row(v) << -0.15 * s * V(v, 0), (0.003 - 0.012 * t * t) * s, 0.032 * s;
   }
   return D;
+}
+
+/// The kit's eyeballs are larger than its sockets. A round eye that fits behind its lids, open and closed.
+void fit_eye(const FaceKit& kit, const face_kit::Range& sclera, const face_kit::Range& socket, const char* blink,
+             TriangleMesh& eye) {
+  constexpr double front = 0.005, film = 0.0002;  // metres: where lids are, and between them and the eye
+  const MatrixX3d& V = kit.neutral.V;
+  const Vector3d centre = fit_sphere(V.middleRows(sclera.first, sclera.end - sclera.first)).centre;
+  double radius = 1;
+  for (const int v : used_vertices(kit.neutral, socket))
+    for (const double closed : {0.0, 1.0}) {
+      const Vector3d p = (V.row(v) + closed * kit.expressions.at(blink).row(v)).transpose() - centre;
+      if (p.z() > front) radius = std::min(radius, p.norm() - film);
+    }
+  for (Eigen::Index v = 0; v < eye.V.rows(); ++v) {
+    const Vector3d away = eye.V.row(v).transpose() - centre;
+    eye.V.row(v) = centre + radius * away.normalized();
+  }
 }
 
 }  // namespace
@@ -111,7 +137,9 @@ KitParts kit_parts(const FaceKit& kit) {
   for (Part& part : result.parts)
     if (part.carrier == Carrier::mandible) part.mesh.V.col(1).array() -= clench;
   add("leftEye", Carrier::left_eye, faces({left_eye_faces.first, left_eye_faces.first + 800}));
+  fit_eye(kit, left_sclera_vertices, left_socket_faces, "eyeBlink_L", result.parts.back().mesh);
   add("rightEye", Carrier::right_eye, faces({right_eye_faces.first, right_eye_faces.first + 800}));
+  fit_eye(kit, right_sclera_vertices, right_socket_faces, "eyeBlink_R", result.parts.back().mesh);
   return result;
 }
 
