@@ -138,11 +138,14 @@ MuscleBundle temporalis(const Proportions& p, const MatrixX3d& mandible, double 
   return bundle;
 }
 
-/// What BodyParts3D lacks (temporalis), or has as threads only (depressor septi), is drawn as in the built-in head.
+/// What BodyParts3D lacks (temporalis), or has as threads only (depressor septi, levator anguli oris), is drawn: the
+/// latter as in the built-in head.
 void add_drawn_muscles(std::vector<MuscleShape>& shapes, const HeadTemplate& head, const Proportions& proportions,
                        const MatrixX3d& mandible) {
   std::vector<MuscleBundle> bundles = make_muscle_bundles(proportions);
-  std::erase_if(bundles, [](const MuscleBundle& bundle) { return bundle.name != "depressorSepti"; });
+  std::erase_if(bundles, [](const MuscleBundle& bundle) {
+    return bundle.name != "depressorSepti" && !bundle.name.starts_with("levatorAnguliOris");
+  });
   for (const double side : {1.0, -1.0}) {
     bundles.push_back(temporalis(proportions, mandible, side));
     bundles.back().name = side > 0 ? "temporalis left" : "temporalis right";

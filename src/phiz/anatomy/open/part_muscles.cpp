@@ -25,7 +25,7 @@ struct Plan {
   const char* stem;
   std::vector<int> left, right;
   int landmark = -1;                      ///< of the left side
-  Vector3d direction = Vector3d::Zero();  ///< of pull from origin to insertion, for sheets; of the origin with both
+  Vector3d direction = Vector3d::Zero();  ///< of pull from origin to insertion, for sheets
 };
 
 const std::vector<Plan>& plans() {
@@ -38,7 +38,6 @@ const std::vector<Plan>& plans() {
       {"levatorLabiiSuperioris", {46807}, {46806}, 52, {}},
       {"zygomaticusMinor", {46815}, {46814}, 52, {}},
       {"zygomaticusMajor", {46813}, {46812}, 54, {}},
-      {"levatorAnguliOris", {46824}, {46823}, 54, down},
       {"risorius", {46840}, {46839}, 54, {}},
       {"buccinator", {46836}, {46835}, 54, {}},
       {"depressorAnguliOris", {46830}, {46829}, 54, {}},
@@ -271,11 +270,6 @@ std::vector<MuscleShape> part_muscles(const BodyParts& parts, const SpaceMap& ma
         const int mark = left ? plan.landmark : mirrored_landmark(plan.landmark);
         const Vector3d goal = guide.landmarks[static_cast<std::size_t>(mark)];
         set_ends(shape, -(shape.surface.V.rowwise() - goal.transpose()).rowwise().norm());
-        if (!plan.direction.isZero()) {  // a broad origin
-          MuscleShape broad = shape;
-          set_ends(broad, shape.surface.V * plan.direction);
-          shape.origin = broad.origin;
-        }
       }
     }
   }

@@ -11,8 +11,9 @@
 
 namespace phiz {
 
-/// The muscles of expression of phace.md section 3 (fifteen pairs, procerus, orbicularis oris) and the masseters, in
-/// the frame of the face, with their origins and insertions. `bones`: skull and mandible there.
+/// The muscles of expression of phace.md section 3 (fourteen pairs without levator anguli oris, procerus, orbicularis
+/// oris) and the masseters, in the frame of the face, with their origins and insertions. `bones`: skull and mandible
+/// there.
 std::vector<MuscleShape> part_muscles(const BodyParts& parts, const SpaceMap& map, const FaceGuide& guide,
                                       const FaceKitSkin& skin, const BoneSolids& bones);
 
