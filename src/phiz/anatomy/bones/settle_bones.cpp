@@ -226,14 +226,18 @@ TriangleMesh bone_surface(const ScalarField& bone, const MatrixX3d& around, doub
   options.edge_length = std::min(edge_length, finest_shape);
   options.lipschitz = 1.5;
   options.projection_steps = 1;
-  TriangleMesh mesh = main_part(polygonise(bone, bounds(around), options), name);
-  if (edge_length > finest_shape) {
-    CoarsenOptions coarser;
-    coarser.edge_length = [edge_length](const Vector3d&) { return edge_length; };
-    coarser.slenderness = 1.5;
-    mesh = coarsen(mesh, coarser);
+  const TriangleMesh mesh = main_part(polygonise(bone, bounds(around), options), name);
+  if (edge_length <= finest_shape) return mesh;
+  const double area = 0.5 * triangle_area_normals(mesh.V, mesh.F).rowwise().norm().sum();
+  for (const double more : {1.0, 1.4, 2.0}) {
+    TriangleMesh fewer = decimate(mesh, static_cast<int>(more * area / (0.433 * edge_length * edge_length)));
+    if (self_intersections(fewer).empty()) return fewer;
   }
-  return mesh;
+  // Real bones have sheets and arches that decimation makes cross each other.
+  CoarsenOptions coarser;
+  coarser.edge_length = [edge_length](const Vector3d&) { return edge_length; };
+  coarser.slenderness = 1.5;
+  return coarsen(mesh, coarser);
 }
 
 BoneSurfaces settle_bones(const ClippedBones& fields, const TriangleMesh& simulated_skin, const BoneOptions& options) {

@@ -32,7 +32,7 @@ struct SizePlan {
 constexpr int drawn_level = 2;
 constexpr double drawn_bone_edge = 0.0022;
 constexpr FibreOptions muscle_voxels{0.0008, 25'000};  ///< the muscles are smooth and in one piece
-constexpr std::array<SizePlan, 3> plans{{{0, 0.0160, 0.0100}, {1, 0.0105, 0.0075}, {2, 0.0055, 0.0040}}};
+constexpr std::array<SizePlan, 3> plans{{{0, 0.0112, 0.0100}, {1, 0.0105, 0.0075}, {2, 0.0055, 0.0040}}};
 
 const SizePlan& plan_of(HeadSize size) {
   return plans[static_cast<std::size_t>(size)];
