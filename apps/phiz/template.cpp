@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// phiz template builtin: makes a head from parameters. Its other verb: template_check.cpp.
-#include <fmt/format.h>
-
+// phiz template builtin: makes a head from parameters. Its other verbs: template_build, _person, _check.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <memory>
@@ -9,10 +7,10 @@
 #include <optional>
 #include <string>
 
+#include "made_head.h"
 #include "options.h"
 #include "phiz/anatomy/builtin/builtin_head.h"
 #include "phiz/core/progress.h"
-#include "phiz/io/container.h"
 #include "phiz/io/output_file.h"
 #include "report.h"
 #include "verbs.h"
@@ -36,27 +34,13 @@ void make_builtin(const BuiltinArguments& arguments) {
   options.report = announce;
   require_writable(arguments.output);
   const HeadTemplate head = build_builtin_head(options);
-  save(arguments.output, head);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  arguments.report.print(
-      fmt::format("{}: {}, {} tets ({} soft), {} skin vertices, {} expressions, {} muscles, {:.1f} s\n",
-                  arguments.output, head.name, head.volume.T.rows(), soft_tets(head).size(), head.skin.V.rows(),
-                  head.expressions.size(), head.muscles.size(), seconds));
-  arguments.report.write({{"file", arguments.output},
-                          {"name", head.name},
-                          {"tets", head.volume.T.rows()},
-                          {"soft_tets", soft_tets(head).size()},
-                          {"vertices", head.volume.V.rows()},
-                          {"skin_vertices", head.skin.V.rows()},
-                          {"expressions", head.expressions.size()},
-                          {"muscles", head.muscles.size()},
-                          {"seconds", seconds}});
+  save_and_report(arguments.output, head, start, arguments.report, "", nlohmann::json::object());
 }
 
 }  // namespace
 
 void add_template(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("template", "Make or check a head template");
+  CLI::App* verb = app.add_subcommand("template", "Make a head template or a person of it, or check one");
   verb->require_subcommand(1);
   add_template_build(*verb);
   CLI::App* builtin = verb->add_subcommand("builtin", "Make the built-in head, or a random person of its kind");
@@ -73,6 +57,7 @@ void add_template(CLI::App& app) {
   add_report(*builtin, arguments->report);
   builtin->footer("Example:\n  phiz template builtin --size standard --person 7 -o head.phiz");
   builtin->callback([arguments] { make_builtin(*arguments); });
+  add_template_person(*verb);
   add_template_check(*verb);
 }
 

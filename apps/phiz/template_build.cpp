@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "made_head.h"
 #include "options.h"
 #include "phiz/anatomy/open/open_head.h"
 #include "phiz/core/error.h"
@@ -76,22 +77,8 @@ void make_open_head(const BuildArguments& arguments) {
       if (!error) save(kept.string(), head);
     }
   }
-  save(arguments.output, head);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  arguments.report.print(
-      fmt::format("{}: {}, {} tets ({} soft), {} skin vertices, {} expressions, {} muscles, {:.1f} s{}\n",
-                  arguments.output, head.name, head.volume.T.rows(), soft_tets(head).size(), head.skin.V.rows(),
-                  head.expressions.size(), head.muscles.size(), seconds, cached ? " (from the cache)" : ""));
-  arguments.report.write({{"file", arguments.output},
-                          {"name", head.name},
-                          {"tets", head.volume.T.rows()},
-                          {"soft_tets", soft_tets(head).size()},
-                          {"vertices", head.volume.V.rows()},
-                          {"skin_vertices", head.skin.V.rows()},
-                          {"expressions", head.expressions.size()},
-                          {"muscles", head.muscles.size()},
-                          {"cached", cached},
-                          {"seconds", seconds}});
+  save_and_report(arguments.output, head, start, arguments.report, cached ? " (from the cache)" : "",
+                  {{"cached", cached}});
 }
 
 }  // namespace

@@ -10,8 +10,9 @@ class App;
 namespace phiz {
 
 void add_template(CLI::App& app);
-/// Parts of `template`: add its verbs `build` and `check`.
+/// Parts of `template`: add its verbs `build`, `person` and `check`.
 void add_template_build(CLI::App& verb);
+void add_template_person(CLI::App& verb);
 void add_template_check(CLI::App& verb);
 void add_animate(CLI::App& app);
 void add_export(CLI::App& app);

@@ -54,7 +54,6 @@ inline HeadTemplate sample_head() {
   head.attachments.normals = Vector3d::UnitZ().transpose();
   head.identity.skin = Eigen::MatrixXf::Constant(12, 2, 0.001F);
   head.identity.skin(5, 1) = -0.002F;
-  head.identity.parts["tongue"] = Eigen::MatrixXf::Constant(12, 2, 0.003F);
   head.identity.deviation = VectorXd::LinSpaced(2, 0.002, 0.001);
   head.contact_regions.push_back({"lips", VectorXi::Zero(1), skin.F.topRows(2), true});
   head.contact_pairs = {{"lips", "skull"}};

@@ -16,7 +16,7 @@
 namespace phiz {
 namespace {
 
-constexpr int least_free = 3;  // directions; fewer: a look into the mouth or a nostril
+constexpr int least_free = 3;  // directions; fewer: a look into a nostril
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Directions spread evenly over the sphere (Fibonacci).
@@ -30,13 +30,26 @@ std::array<Vector3d, 32> directions() {
   return all;
 }
 
-/// The triangles that can be seen from outside.
-MatrixX3i outer_triangles(const TriangleMesh& skin) {
+/// Least depth of the rows of `points` inside of a surface.
+double least_depth(const SurfaceQuery& surface, const MatrixX3d& points) {
+  return points.rows() == 0 ? infinity : -surface.signed_distances(points).maxCoeff();
+}
+
+}  // namespace
+
+MatrixX3i outer_triangles(const HeadTemplate& head) {
+  const TriangleMesh& skin = head.skin;
+  std::vector<char> lining(static_cast<std::size_t>(skin.V.rows()), 0);
+  for (const char* name : {"mouthBag", "leftSocket", "rightSocket"})
+    if (const auto region = head.skin_regions.find(name); region != head.skin_regions.end())
+      for (const int v : region->second) lining[static_cast<std::size_t>(v)] = 1;
   const SurfaceQuery query(skin);
   const MatrixX3d normals = triangle_normals(skin.V, skin.F);
   const auto ways = directions();
   std::vector<char> seen(static_cast<std::size_t>(skin.F.rows()), 0);
   parallel_for(skin.F.rows(), [&](std::ptrdiff_t f) {
+    const auto lines = [&](int k) { return lining[static_cast<std::size_t>(skin.F(f, k))] != 0; };
+    if (lines(0) && lines(1) && lines(2)) return;
     const Vector3d normal = normals.row(f);
     const Vector3d start = skin.V(skin.F.row(f), Eigen::all).colwise().mean().transpose() + 1e-5 * normal;
     const auto free = [&](const Vector3d& way) { return way.dot(normal) > 0.1 && !query.first_hit(start, way); };
@@ -47,13 +60,6 @@ MatrixX3i outer_triangles(const TriangleMesh& skin) {
     if (seen[f]) rows.push_back(static_cast<int>(f));
   return skin.F(rows, Eigen::all);
 }
-
-/// Least depth of the rows of `points` inside of a surface.
-double least_depth(const SurfaceQuery& surface, const MatrixX3d& points) {
-  return points.rows() == 0 ? infinity : -surface.signed_distances(points).maxCoeff();
-}
-
-}  // namespace
 
 TriangleMesh simulation_skin(const HeadTemplate& head, const MatrixX3d& displacement) {
   TriangleMesh skin{head.volume.V, head.skin_triangles, {}, {}};
@@ -78,7 +84,7 @@ double simulated_bone_depth(const HeadTemplate& head) {
 }
 
 double drawn_bone_depth(const HeadTemplate& head) {
-  const SurfaceQuery skin(head.skin.V, outer_triangles(head.skin));
+  const SurfaceQuery skin(head.skin.V, outer_triangles(head));
   double least = infinity;
   for (const char* name : {"skull", "mandible"})
     if (const Part* part = find_part(head, name)) least = std::min(least, least_depth(skin, part->mesh.V));

@@ -13,8 +13,12 @@ namespace phiz {
 /// sockets too), and of the skin's vertices above the bones; negative where a bone sticks out.
 double simulated_bone_depth(const HeadTemplate& head);
 
-/// The least depth of the vertices of the drawn skull and mandible below the drawn skin as seen from outside: its
-/// triangles from which at least three of 32 directions lead away freely. Infinite when there are no such parts.
+/// The triangles of the drawn skin as seen from outside: from which at least three of 32 directions lead away freely,
+/// without the lining of mouth and eye sockets, which parted lips show.
+MatrixX3i outer_triangles(const HeadTemplate& head);
+
+/// The least depth of the vertices of the drawn skull and mandible below those triangles. Infinite when there are no
+/// such parts.
 double drawn_bone_depth(const HeadTemplate& head);
 
 /// The flesh over a craniometric landmark of the thickness table: along the bone's normal up to the simulation skin.

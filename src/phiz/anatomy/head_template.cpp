@@ -38,4 +38,18 @@ const Expression* find_expression(const HeadTemplate& head, const std::string& n
   return found == head.expressions.end() ? nullptr : &*found;
 }
 
+void translate(HeadTemplate& head, const Vector3d& by) {
+  const auto move = [&by](MatrixX3d& points) { points.rowwise() += by.transpose(); };
+  move(head.volume.V);
+  move(head.skin.V);
+  for (Part& part : head.parts) move(part.mesh.V);
+  for (Muscle& muscle : head.muscles) {
+    move(muscle.surface.V);
+    for (MatrixX3d& fibre : muscle.fibres) move(fibre);
+  }
+  head.jaw.centre += by;
+  head.left_eye_centre += by;
+  head.right_eye_centre += by;
+}
+
 }  // namespace phiz

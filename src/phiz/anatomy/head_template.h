@@ -78,9 +78,8 @@ struct Attachments {
 /// A statistical model of people: skin = HeadTemplate::skin.V + sum over k of c_k mode_k, the c_k independent and
 /// standard normal. Empty where nothing is known.
 struct IdentityModel {
-  Eigen::MatrixXf skin;                          ///< 3 n_skin x k: x, y, z of vertex 0, of vertex 1, ...; metres
-  std::map<std::string, Eigen::MatrixXf> parts;  ///< the same for parts that have their own data (teeth, eyes)
-  VectorXd deviation;  ///< k: root mean square displacement of the skin by one unit of the mode, metres
+  Eigen::MatrixXf skin;  ///< 3 n_skin x k: x, y, z of vertex 0, of vertex 1, ...; metres
+  VectorXd deviation;    ///< k: root mean square displacement of the skin by one unit of the mode, metres
 };
 
 /// A patch of the simulation skin that takes part in contact.
@@ -143,5 +142,8 @@ double active_share(const HeadTemplate& head);
 const Part* find_part(const HeadTemplate& head, const std::string& name);
 /// The expression of that name, or nullptr.
 const Expression* find_expression(const HeadTemplate& head, const std::string& name);
+
+/// Moves everything that has a place by `by`, metres.
+void translate(HeadTemplate& head, const Vector3d& by);
 
 }  // namespace phiz

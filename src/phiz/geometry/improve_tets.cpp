@@ -130,19 +130,19 @@ void work(TetComplex& complex, double target, double insert_below, int passes, I
   complex = std::move(best);
 }
 
-void check(const TetMesh& mesh, const ImproveOptions& options) {
+void check_options(const TetMesh& mesh, const ImproveOptions& options) {
   if (!(options.target >= 0 && options.target < 60) || !(options.insert_below >= 0) || options.passes < 0)
     throw Error(ErrorKind::usage,
                 "the target must lie between 0 and 60 degrees, insert_below and passes must not be negative");
   if (options.give.size() > 0 && (options.give.size() != mesh.V.rows() || !(options.give.minCoeff() >= 0)))
     throw Error(ErrorKind::usage, "give must hold one number for each vertex, none negative");
-  validate(mesh, "improve_tets");
 }
 
 }  // namespace
 
 ImproveSummary improve_tets(TetMesh& mesh, const ImproveOptions& options) {
-  check(mesh, options);
+  check_options(mesh, options);
+  validate(mesh, "improve_tets");
   TetComplex complex(mesh, options.give);
   int surface = 0;
   while (surface < complex.vertices() && complex.on_surface(surface)) ++surface;
@@ -173,6 +173,21 @@ ImproveSummary improve_tets(TetMesh& mesh, const ImproveOptions& options) {
     summary.largest_surface_move = std::max(summary.largest_surface_move, complex.moved_by(v));
   mesh = complex.mesh();
   return summary;
+}
+
+double smooth_tets(TetMesh& mesh, const ImproveOptions& options) {
+  check_options(mesh, options);
+  TetComplex complex(mesh, options.give);
+  const double target = sine(options.target);
+  bool changed = true;
+  for (int pass = 0; pass < options.passes && changed; ++pass) {
+    changed = false;
+    for (const int t : poor_tets(complex, target))
+      for (const int v : complex.tet(t).v) changed = smooth_vertex(complex, v) || changed;
+    complex.settle();
+  }
+  for (int v = 0; v < complex.vertices(); ++v) mesh.V.row(v) = complex.x(v);
+  return degrees(worst_of(complex));
 }
 
 std::string brief_report(const ImproveSummary& s) {

@@ -38,4 +38,8 @@ std::string brief_report(const ImproveSummary& summary);
 /// a surface comes after one that is not.
 ImproveSummary improve_tets(TetMesh& mesh, const ImproveOptions& options = {});
 
+/// The moves alone: tets and rows stay as they are, and inverted tets are turned back where that is possible. Of the
+/// options `target`, `give` and `passes` count. Returns the worst angle reached, degrees; negative when inverted.
+double smooth_tets(TetMesh& mesh, const ImproveOptions& options);
+
 }  // namespace phiz

@@ -102,4 +102,16 @@ TriangleMesh joined(std::span<const TriangleMesh> meshes) {
   return all;
 }
 
+std::vector<int> farthest_points(const MatrixX3d& points, Eigen::Index count) {
+  std::vector<int> chosen{0};
+  VectorXd distance = (points.rowwise() - points.row(0)).rowwise().squaredNorm();
+  while (static_cast<Eigen::Index>(chosen.size()) < count) {
+    Eigen::Index farthest = 0;
+    if (distance.maxCoeff(&farthest) <= 0) break;
+    chosen.push_back(static_cast<int>(farthest));
+    distance = distance.cwiseMin((points.rowwise() - points.row(farthest)).rowwise().squaredNorm());
+  }
+  return chosen;
+}
+
 }  // namespace phiz

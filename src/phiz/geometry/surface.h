@@ -30,6 +30,10 @@ double signed_volume(const MatrixX3d& V, const MatrixX3i& F);
 Vector3d volume_centroid(const MatrixX3d& V, const MatrixX3i& F);
 double mean_edge_length(const MatrixX3d& V, const MatrixX3i& F);
 
+/// Up to `count` rows of points (at least one), each as far from those before it as any is (farthest point sampling);
+/// fewer when points coincide.
+std::vector<int> farthest_points(const MatrixX3d& points, Eigen::Index count);
+
 /// All meshes as one, vertices and triangles in order.
 TriangleMesh joined(std::span<const TriangleMesh> meshes);
 

@@ -141,23 +141,12 @@ Attachments stored_attachments(const Hdf5Group& group) {
 void store_identity(const Hdf5Group& group, const IdentityModel& identity) {
   group.write("skin", identity.skin);
   group.write("deviation", identity.deviation);
-  const Hdf5Group parts = group.create_group("parts");
-  std::vector<std::string> names;
-  for (const auto& [name, modes] : identity.parts) {
-    parts.write(std::to_string(names.size()), modes);
-    names.push_back(name);
-  }
-  parts.write_strings("names", names);
 }
 
 IdentityModel stored_identity(const Hdf5Group& group) {
   IdentityModel identity;
   identity.skin = group.read<Eigen::MatrixXf>("skin");
   identity.deviation = group.read<VectorXd>("deviation");
-  const Hdf5Group parts = group.group("parts");
-  const auto names = parts.read_strings("names");
-  for (std::size_t i = 0; i < names.size(); ++i)
-    identity.parts[names[i]] = parts.read<Eigen::MatrixXf>(std::to_string(i));
   return identity;
 }
 

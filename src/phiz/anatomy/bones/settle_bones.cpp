@@ -110,48 +110,6 @@ Box bounds(const MatrixX3d& V) {
   return {V.colwise().minCoeff().transpose(), V.colwise().maxCoeff().transpose()};
 }
 
-/// Moves the vertices of `bone` that lie nearer to the skin than `least` away from it, and those of triangles that skin
-/// vertices come nearer to, in small steps.
-void keep_clear(TriangleMesh& bone, const TriangleMesh& skin, double least) {
-  constexpr double step = 0.0006;
-  const MatrixX3d skin_normals = vertex_normals(skin.V, skin.F);
-  const SurfaceQuery skin_query(skin);
-  for (int pass = 0; pass < 14; ++pass) {
-    MatrixX3d move = MatrixX3d::Zero(bone.V.rows(), 3);
-    bool moved = false;
-    const auto push = [&](int v, double distance, const Vector3d& inward) {
-      const Vector3d by = std::min(distance, step) * inward;
-      if (by.squaredNorm() > move.row(v).squaredNorm()) move.row(v) = by;
-      moved = true;
-    };
-    const SurfaceQuery bone_query(bone);
-    for (Eigen::Index s = 0; s < skin.V.rows(); ++s) {
-      const Vector3d p = skin.V.row(s), inward = -skin_normals.row(s);
-      const auto near = bone_query.closest_point_within(p, 3 * least);
-      if (!near) continue;
-      const double depth = (near->position - p).dot(inward);  // how far below the skin the bone is
-      const double distance = std::sqrt(near->squared_distance);
-      const double clear = depth > -0.5 * distance ? distance : -distance;
-      if (clear >= least) continue;
-      for (int k = 0; k < 3; ++k)
-        push(bone.F(near->triangle, k), (least - clear) * (0.4 + 0.6 * near->barycentric(k)), inward);
-    }
-    for (Eigen::Index v = 0; v < bone.V.rows(); ++v) {
-      const Vector3d p = bone.V.row(v);
-      const auto near = skin_query.closest_point_within(p, 3 * least);
-      if (!near) continue;
-      Vector3d inward = Vector3d::Zero();
-      for (int k = 0; k < 3; ++k)
-        inward -= near->barycentric(k) * skin_normals.row(skin.F(near->triangle, k)).transpose();
-      const double distance = std::sqrt(near->squared_distance);
-      const double clear = inward.dot(p - near->position) > -0.2 * distance ? distance : -distance;
-      if (clear < least) push(static_cast<int>(v), least - clear, inward.normalized());
-    }
-    if (!moved) return;
-    bone.V += move;
-  }
-}
-
 /// Long triangles cut corners at the joint: moves the mandible away from the skull until it keeps about `gap` and no
 /// triangles cross, withdrawing into itself where it must.
 void separate(TriangleMesh& mandible, const TriangleMesh& skull, double gap) {
@@ -199,6 +157,46 @@ TriangleMesh clear_surface(const ScalarField& field, const TriangleMesh& skin, d
 }
 
 }  // namespace
+
+void keep_clear(TriangleMesh& bone, const TriangleMesh& skin, double least) {
+  constexpr double step = 0.0006;
+  const MatrixX3d skin_normals = vertex_normals(skin.V, skin.F);
+  const SurfaceQuery skin_query(skin);
+  for (int pass = 0; pass < 14; ++pass) {
+    MatrixX3d move = MatrixX3d::Zero(bone.V.rows(), 3);
+    bool moved = false;
+    const auto push = [&](int v, double distance, const Vector3d& inward) {
+      const Vector3d by = std::min(distance, step) * inward;
+      if (by.squaredNorm() > move.row(v).squaredNorm()) move.row(v) = by;
+      moved = true;
+    };
+    const SurfaceQuery bone_query(bone);
+    for (Eigen::Index s = 0; s < skin.V.rows(); ++s) {
+      const Vector3d p = skin.V.row(s), inward = -skin_normals.row(s);
+      const auto near = bone_query.closest_point_within(p, 3 * least);
+      if (!near) continue;
+      const double depth = (near->position - p).dot(inward);  // how far below the skin the bone is
+      const double distance = std::sqrt(near->squared_distance);
+      const double clear = depth > -0.5 * distance ? distance : -distance;
+      if (clear >= least) continue;
+      for (int k = 0; k < 3; ++k)
+        push(bone.F(near->triangle, k), (least - clear) * (0.4 + 0.6 * near->barycentric(k)), inward);
+    }
+    for (Eigen::Index v = 0; v < bone.V.rows(); ++v) {
+      const Vector3d p = bone.V.row(v);
+      const auto near = skin_query.closest_point_within(p, 3 * least);
+      if (!near) continue;
+      Vector3d inward = Vector3d::Zero();
+      for (int k = 0; k < 3; ++k)
+        inward -= near->barycentric(k) * skin_normals.row(skin.F(near->triangle, k)).transpose();
+      const double distance = std::sqrt(near->squared_distance);
+      const double clear = inward.dot(p - near->position) > -0.2 * distance ? distance : -distance;
+      if (clear < least) push(static_cast<int>(v), least - clear, inward.normalized());
+    }
+    if (!moved) return;
+    bone.V += move;
+  }
+}
 
 ClippedBones clip_bones(const BoneShape& skull, const BoneShape& mandible, const BoneEnvelope& skin,
                         const BoneOptions& options) {

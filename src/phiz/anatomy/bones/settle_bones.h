@@ -50,6 +50,10 @@ ClippedBones clip_bones(const BoneShape& skull, const BoneShape& mandible, const
 /// Throws phiz::Error(failure), which names it, when there is none.
 TriangleMesh bone_surface(const ScalarField& bone, const MatrixX3d& around, double edge_length, const char* name);
 
+/// Moves the vertices of `bone` that lie nearer to the skin than `least` (metres) away from it, and those of triangles
+/// that skin vertices come nearer to, in small steps.
+void keep_clear(TriangleMesh& bone, const TriangleMesh& skin, double least);
+
 /// Closed, outward, non-self-intersecting bones that keep `inner_clearance` from the inner sheets, `least_flesh` from
 /// the outer skin and `joint_gap` from each other (to within a third of these at coarse edge lengths).
 /// `simulated_skin`: what the bones must not touch. Throws phiz::Error(failure) when the skin leaves no room for them.

@@ -15,6 +15,7 @@
 #include "phiz/anatomy/builtin/mouth/tongue.h"
 #include "phiz/anatomy/builtin/muscles.h"
 #include "phiz/anatomy/builtin/skin/eye.h"
+#include "phiz/anatomy/builtin/skin/people.h"
 #include "phiz/anatomy/builtin/skin/surface.h"
 #include "phiz/anatomy/contact_regions.h"
 #include "phiz/anatomy/fibres.h"
@@ -136,6 +137,7 @@ HeadTemplate build_builtin_head(const BuiltinOptions& options) {
   head.skin_sampling.makeCompressed();
   head.skin_interpolation = skin_interpolation_between(skin, plan.skin_level, drawn_level);
   add_parts(head, proportions, drawn);
+  if (!options.person && !options.identity) head.identity = builtin_people(drawn);
   head.skin = std::move(drawn.mesh);
   head.skin_regions = std::move(drawn.regions);
   head.landmarks = skin.landmarks;

@@ -19,44 +19,48 @@ namespace phiz {
 
 namespace {
 
-Vector3d mean_of(const MatrixX3d& V, const std::vector<int>& rows) {
-  Vector3d sum = Vector3d::Zero();
-  for (const int v : rows) sum += V.row(v).transpose();
-  return sum / static_cast<double>(rows.size());
+constexpr int cap_rings = 7;
+
+/// The vertices that close a loop: rings that shrink to its centre, and that.
+MatrixX3d cap_of(const MatrixX3d& loop) {
+  const Eigen::Index n = loop.rows();
+  const Eigen::RowVector3d centre = loop.colwise().mean();
+  MatrixX3d cap((cap_rings - 1) * n + 1, 3);
+  for (int ring = 1; ring < cap_rings; ++ring) {
+    const double t = double(ring) / cap_rings;
+    cap.middleRows((ring - 1) * n, n) = ((1 - t) * loop).rowwise() + t * centre;
+  }
+  cap.bottomRows(1) = centre;
+  return cap;
 }
 
-/// Closes the base of the neck with rings that shrink to its centre. Texture coordinates of the cap are one point.
-void cap_neck(TriangleMesh& mesh) {
+/// Closes the base of the neck; returns its loop. Texture coordinates of the cap are one point.
+std::vector<int> cap_neck(TriangleMesh& mesh) {
   const auto loops = boundary_loops(mesh.F);
   if (loops.size() != 1) reject("face kit", "its skin has " + std::to_string(loops.size()) + " holes, expected 1");
   const std::vector<int> loop = loops.front();
-  constexpr int rings = 7;
   const auto n = static_cast<int>(loop.size());
   const auto first = static_cast<int>(mesh.V.rows()), faces = static_cast<int>(mesh.F.rows());
-  const Vector3d centre = mean_of(mesh.V, loop);
-  mesh.V.conservativeResize(first + (rings - 1) * n + 1, 3);
-  mesh.F.conservativeResize(faces + (2 * (rings - 1) + 1) * n, 3);
+  const MatrixX3d cap = cap_of(mesh.V(loop, Eigen::all));
+  mesh.V.conservativeResize(first + cap.rows(), 3);
+  mesh.V.bottomRows(cap.rows()) = cap;
+  mesh.F.conservativeResize(faces + (2 * (cap_rings - 1) + 1) * n, 3);
   const auto row = [&](int ring, int i) { return ring == 0 ? loop[i % n] : first + (ring - 1) * n + i % n; };
-  for (int ring = 1; ring < rings; ++ring)
-    for (int i = 0; i < n; ++i) {
-      const double t = double(ring) / rings;
-      mesh.V.row(row(ring, i)) = (1 - t) * mesh.V.row(loop[i]) + t * centre.transpose();
-    }
   const int middle = static_cast<int>(mesh.V.rows()) - 1;
-  mesh.V.row(middle) = centre;
   int f = faces;
   for (int i = 0; i < n; ++i) {
-    for (int ring = 0; ring + 1 < rings; ++ring) {
+    for (int ring = 0; ring + 1 < cap_rings; ++ring) {
       mesh.F.row(f++) << row(ring, i + 1), row(ring, i), row(ring + 1, i);
       mesh.F.row(f++) << row(ring, i + 1), row(ring + 1, i), row(ring + 1, i + 1);
     }
-    mesh.F.row(f++) << row(rings - 1, i + 1), row(rings - 1, i), middle;
+    mesh.F.row(f++) << row(cap_rings - 1, i + 1), row(cap_rings - 1, i), middle;
   }
   const auto corner = static_cast<int>(mesh.UV.rows());
   mesh.UV.conservativeResize(corner + 1, 2);
   mesh.UV.row(corner).setZero();
   mesh.FUV.conservativeResize(mesh.F.rows(), 3);
   mesh.FUV.bottomRows(mesh.F.rows() - faces).setConstant(corner);
+  return loop;
 }
 
 std::vector<char> used_by(const PolygonMesh& mesh, const face_kit::Range& faces, Eigen::Index count) {
@@ -191,11 +195,18 @@ FaceKitSkin make_face_kit_skin(const FaceKit& kit) {
       if (v >= skin.V.rows()) reject("face kit", "a face of the skin has the corner " + std::to_string(v));
   FaceKitSkin result;
   result.mesh = triangulate(skin);
-  cap_neck(result.mesh);
+  result.neck_loop = cap_neck(result.mesh);
   if (!untangle(result.mesh, 40)) fail("the skin of the face kit intersects itself and could not be mended");
   require_closed_manifold(result.mesh, "face kit's skin");
   Regions(kit, result).name();
   return result;
+}
+
+MatrixX3d with_cap(const FaceKitSkin& skin, const MatrixX3d& of_kit) {
+  MatrixX3d all(skin.mesh.V.rows(), 3);
+  const MatrixX3d cap = cap_of(of_kit(skin.neck_loop, Eigen::all));
+  all << of_kit.topRows(face_kit::skin_vertices.end), cap;
+  return all;
 }
 
 TriangleMesh simulation_skin(const FaceKitSkin& skin, int vertices) {

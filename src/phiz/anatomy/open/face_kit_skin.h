@@ -15,6 +15,7 @@ namespace phiz {
 struct FaceKitSkin {
   TriangleMesh mesh;  ///< closed, manifold, outward, free of self-intersections; texture coordinates of the face kit
   std::map<std::string, VectorXi> regions;    ///< rows of mesh.V; names as in the built-in skin
+  std::vector<int> neck_loop;                 ///< where the cap begins
   std::vector<int> lip_line;                  ///< where outer skin and mouth meet
   std::array<std::vector<int>, 2> lid_lines;  ///< where outer skin and eye socket meet, left and right
 };
@@ -22,6 +23,9 @@ struct FaceKitSkin {
 /// Throws phiz::Error(bad_input) when the mesh is not laid out as the face kit's, phiz::Error(failure) when it cannot
 /// be freed of self-intersections.
 FaceKitSkin make_face_kit_skin(const FaceKit& kit);
+
+/// Displacements of the kit's skin (at least 14062 x 3), and of the cap, which follows the loop of the neck.
+MatrixX3d with_cap(const FaceKitSkin& skin, const MatrixX3d& of_kit);
 
 /// The simulation skin: about `vertices` of them on the drawn skin, fine at lips, lids and nose, coarse at scalp and
 /// shoulders, free of self-intersections.

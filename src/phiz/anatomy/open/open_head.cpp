@@ -17,6 +17,7 @@
 #include "phiz/anatomy/open/face_kit_skin.h"
 #include "phiz/anatomy/open/jaw_of_mandible.h"
 #include "phiz/anatomy/open/kit_expressions.h"
+#include "phiz/anatomy/open/kit_identity.h"
 #include "phiz/anatomy/open/kit_parts.h"
 #include "phiz/anatomy/open/part_muscles.h"
 #include "phiz/anatomy/open/registration.h"
@@ -92,17 +93,6 @@ TriangleMesh drawn_bone(const BodyParts& parts, BodyPartKind kind, const SpaceMa
     mesh.V = map(mesh.V);
   }
   return joined(meshes);
-}
-
-/// Moves everything that has a place.
-void translate(HeadTemplate& head, const Vector3d& by) {
-  const auto move = [&by](MatrixX3d& points) { points.rowwise() += by.transpose(); };
-  move(head.volume.V);
-  move(head.skin.V);
-  for (Part& part : head.parts) move(part.mesh.V);
-  head.jaw.centre += by;
-  head.left_eye_centre += by;
-  head.right_eye_centre += by;
 }
 
 void translate(MuscleShape& shape, const Vector3d& by) {
@@ -236,6 +226,8 @@ HeadTemplate build_open_head(const FaceKit& kit, const BodyParts& parts, const O
 
   report("expressions");
   head.expressions = kit_expressions(kit, head.skin.V.rows(), head.jaw);
+  report("people");
+  head.identity = kit_identity(kit, skin);
 
   const Vector3d to_condyles = -head.jaw.centre;
   translate(head, to_condyles);

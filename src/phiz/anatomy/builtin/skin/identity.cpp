@@ -86,6 +86,18 @@ constexpr Shares shares[] = {{&P::head_length, 0.55, 0.4, 0, 0},
                              {&P::nose_tip_width, 0.3, 0, 0.1, 0.4},
                              {&P::chin_width, 0.5, 0.1, 0.1, 0}};
 
+/// The shares of a parameter, and what is its own, so that its variance is 1.
+struct Loading {
+  double male = 0, size = 0, weight = 0, breadth = 0, own = 1;
+};
+Loading loading(double P::*parameter) {
+  for (const Shares& of : shares)
+    if (of.parameter == parameter)
+      return {of.male, of.size, of.weight, of.breadth,
+              std::sqrt(1 - (of.male * of.male + of.size * of.size + of.weight * of.weight + of.breadth * of.breadth))};
+  return {};
+}
+
 }  // namespace
 
 IdentityParameters random_identity(std::uint64_t seed) {
@@ -95,15 +107,21 @@ IdentityParameters random_identity(std::uint64_t seed) {
   const double male = (random.uniform() < 0.5 ? -0.92 : 0.92) + 0.39 * random.normal();  // variance 1
   const double size = random.normal(), weight = random.normal(), breadth = random.normal();
   for (const auto& parameter : identity_parameter_names) {
-    double shared = 0, variance = 0;
-    for (const Shares& of : shares) {
-      if (of.parameter != parameter.value) continue;
-      shared = of.male * male + of.size * size + of.weight * weight + of.breadth * breadth;
-      variance = of.male * of.male + of.size * of.size + of.weight * of.weight + of.breadth * of.breadth;
-    }
-    identity.*parameter.value = std::clamp(shared + std::sqrt(1 - variance) * random.normal(), -most, most);
+    const Loading of = loading(parameter.value);
+    const double shared = of.male * male + of.size * size + of.weight * weight + of.breadth * breadth;
+    identity.*parameter.value = std::clamp(shared + of.own * random.normal(), -most, most);
   }
   return identity;
+}
+
+MatrixXd identity_covariance() {
+  MatrixXd loadings = MatrixXd::Zero(identity_parameter_count, 4 + identity_parameter_count);
+  for (int i = 0; i < identity_parameter_count; ++i) {
+    const Loading of = loading(identity_parameter_names[static_cast<std::size_t>(i)].value);
+    loadings.row(i).head<4>() << of.male, of.size, of.weight, of.breadth;
+    loadings(i, 4 + i) = of.own;
+  }
+  return loadings * loadings.transpose();
 }
 
 Proportions personalise(const Proportions& mean, const IdentityParameters& q) {

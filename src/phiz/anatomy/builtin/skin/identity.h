@@ -60,6 +60,9 @@ extern const std::array<IdentityParameterName, identity_parameter_count> identit
 /// weight and breadth of nose and lips. The same person for the same seed on every machine.
 IdentityParameters random_identity(std::uint64_t seed);
 
+/// The covariance of the parameters among people, in the order of identity_parameter_names; variances are 1.
+MatrixXd identity_covariance();
+
 /// The proportions of a person, for skin, skull and teeth alike. Parameters outside [-4, 4] or not finite are rejected
 /// with phiz::Error (bad_input).
 Proportions personalise(const Proportions& mean, const IdentityParameters& identity);
