@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "phiz/anatomy/open/part_muscles.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <sstream>
 #include <string>
 #include <tuple>
 #include <utility>
 
+#include "phiz/anatomy/muscle_table.h"
 #include "phiz/anatomy/open/flesh_layer.h"
 #include "phiz/core/parallel.h"
 #include "phiz/geometry/remesh.h"
@@ -20,33 +23,42 @@ namespace phiz {
 
 namespace {
 
-/// A muscle of one side: its parts (left, right), and where it inserts: towards a landmark, or along a direction.
+/// Where a pair of muscles inserts: towards a landmark, or along a direction.
 struct Plan {
   const char* stem;
-  std::vector<int> left, right;
   int landmark = -1;                      ///< of the left side
-  Vector3d direction = Vector3d::Zero();  ///< of pull from origin to insertion, for sheets
+  Vector3d direction = Vector3d::Zero();  ///< of pull from origin to insertion; spindles: about
 };
 
 const std::vector<Plan>& plans() {
   const Vector3d up(0, 1, 0), down(0, -1, 0);
   static const std::vector<Plan> all = {
-      {"frontalis", {46760}, {46759}, -1, down},
-      {"corrugator", {46797}, {46796}, 25, {}},
-      {"nasalis", {55607}, {55606}, 28, {}},
-      {"levatorLabiiSuperiorisAlaequeNasi", {46804}, {46803}, 52, {}},
-      {"levatorLabiiSuperioris", {46807}, {46806}, 52, {}},
-      {"zygomaticusMinor", {46815}, {46814}, 52, {}},
-      {"zygomaticusMajor", {46813}, {46812}, 54, {}},
-      {"risorius", {46840}, {46839}, 54, {}},
-      {"buccinator", {46836}, {46835}, 54, {}},
-      {"depressorAnguliOris", {46830}, {46829}, 54, {}},
-      {"depressorLabiiInferioris", {46818}, {46817}, 56, {}},
-      {"mentalis", {46827}, {46826}, -1, Vector3d(0, -1, 0.3)},
-      {"platysma", {45740}, {45739}, -1, up},
-      {"masseter", {49002, 49005}, {49001, 49004}, -1, down},
+      {"frontalis", -1, down},
+      {"corrugator", 25, {}},
+      {"nasalis", 28, {}},
+      {"levatorLabiiSuperiorisAlaequeNasi", 52, {}},
+      {"levatorLabiiSuperioris", 52, {}},
+      {"zygomaticusMinor", 52, {}},
+      {"zygomaticusMajor", 54, {}},
+      {"risorius", 54, {}},
+      {"buccinator", 54, {}},
+      {"depressorAnguliOris", 54, {}},
+      {"depressorLabiiInferioris", 56, {}},
+      {"mentalis", -1, Vector3d(0, -1, 0.3)},
+      {"platysma", -1, up},
+      {"masseter", -1, down},
   };
   return all;
+}
+
+/// The parts that make up a muscle, by their numbers.
+std::vector<int> parts_of(const std::string& muscle) {
+  const MuscleFacts* facts = find_muscle_facts(muscle);
+  std::istringstream list{std::string(muscle.ends_with("Right") ? facts->parts_right : facts->parts_left)};
+  std::vector<int> numbers;
+  constexpr std::size_t prefix = 3;  // FMA
+  for (std::string id; list >> id;) numbers.push_back(std::stoi(id.substr(prefix)));
+  return numbers;
 }
 
 /// The landmark on the other side.
@@ -94,6 +106,13 @@ TriangleMesh belly(const BodyParts& parts, const std::vector<int>& fma, double l
                   volume < 5e-6 ? most_triangles : most_of_sheets);
 }
 
+/// The principal axis of points that leads most in a direction of pull.
+Vector3d long_axis(const MatrixX3d& points, const Vector3d& pull) {
+  const MatrixX3d arms = points.rowwise() - points.colwise().mean();
+  const Vector3d axis = Eigen::SelfAdjointEigenSolver<Matrix3d>(arms.transpose() * arms).eigenvectors().col(2);
+  return axis.dot(pull) < 0 ? Vector3d(-axis) : axis;
+}
+
 /// The rows with the lowest and the highest values: a tenth of them each.
 struct Ends {
   std::vector<int> low, high;
@@ -128,7 +147,8 @@ void set_ends_of_halves(MuscleShape& shape, const VectorXd& along) {
 /// Brings the ring of the lips into the lips of the face: the edges of its opening under the line where they meet, its
 /// corners under the corners of the mouth. Far away nothing moves.
 Rbf into_lips(const BodyParts& parts, const SpaceMap& map, const FaceGuide& guide, const BoneSolids& bones) {
-  constexpr int ring = 46841, lips = 59815;
+  constexpr int lips = 59815;
+  const int ring = parts_of("orbicularisOris").front();
   constexpr double middle = 0.002, under = 0.003, still = 0.028, spacing = 0.012;
   const MatrixX3d V = map(parts.at(ring).V), L = map(parts.at(lips).V);
   const double parting = 0.5 * (L.col(1).minCoeff() + L.col(1).maxCoeff());
@@ -222,35 +242,33 @@ void settle(std::vector<MuscleShape>& shapes, const FleshLayer& layer) {
 std::vector<MuscleShape> part_muscles(const BodyParts& parts, const SpaceMap& map, const FaceGuide& guide,
                                       const FaceKitSkin& skin, const BoneSolids& bones) {
   std::vector<MuscleShape> shapes;
-  std::vector<std::vector<int>> sources;  // numbers of the parts per shape
-  const auto add = [&](const std::string& name, const std::vector<int>& fma) -> MuscleShape& {
+  const auto add = [&shapes](const std::string& name) -> MuscleShape& {
     shapes.push_back({name, {}, {}, {}});
-    sources.push_back(fma);
     return shapes.back();
   };
   for (const Plan& plan : plans()) {
-    add(plan.stem + std::string("Left"), plan.left);
-    add(plan.stem + std::string("Right"), plan.right);
+    add(plan.stem + std::string("Left"));
+    add(plan.stem + std::string("Right"));
   }
-  const auto ring = [&](const std::string& name, const std::vector<int>& fma, int first, int last,
-                        const Vector3d& axis) {
-    MuscleShape& shape = add(name, fma);
+  const auto ring = [&](const std::string& name, int first, int last, const Vector3d& axis) {
+    MuscleShape& shape = add(name);
     shape.ring = true;
     shape.ring_axis = axis.normalized();
     for (int i = first; i <= last; ++i)
       shape.ring_centre += guide.landmarks[static_cast<std::size_t>(i)] / (last - first + 1);
   };
-  ring("orbicularisOculiLeft", {46783, 46786}, 42, 47, {0.3, 0, 1});
-  ring("orbicularisOculiRight", {46782, 46785}, 36, 41, {-0.3, 0, 1});
-  ring("orbicularisOris", {46841}, 60, 67, {0, 0, 1});
-  add("procerus", {55611, 55610});
+  ring("orbicularisOculiLeft", 42, 47, {0.3, 0, 1});
+  ring("orbicularisOculiRight", 36, 41, {-0.3, 0, 1});
+  ring("orbicularisOris", 60, 67, {0, 0, 1});
+  add("procerus");
 
   constexpr double below_chin = 0.050;
   parallel_for(
       static_cast<std::ptrdiff_t>(shapes.size()),
       [&](std::ptrdiff_t i) {
-        TriangleMesh& surface = shapes[static_cast<std::size_t>(i)].surface;
-        const std::vector<int>& fma = sources[static_cast<std::size_t>(i)];
+        MuscleShape& shape = shapes[static_cast<std::size_t>(i)];
+        TriangleMesh& surface = shape.surface;
+        const std::vector<int> fma = parts_of(shape.name);
         // Muscles of the neck reach down to the collar bones; the bust ends above.
         surface = belly(parts, fma, cut_height(parts.at(fma.front()), map, guide.landmarks[8].y() - below_chin));
         surface.V = map(surface.V);
@@ -265,7 +283,8 @@ std::vector<MuscleShape> part_muscles(const BodyParts& parts, const SpaceMap& ma
     for (const bool left : {true, false}) {
       MuscleShape& shape = shapes[2 * i + (left ? 0 : 1)];
       if (plan.landmark < 0) {
-        set_ends(shape, shape.surface.V * plan.direction.normalized());
+        const bool spindle = find_muscle_facts(shape.name)->form == MuscleForm::spindle;
+        set_ends(shape, shape.surface.V * (spindle ? long_axis(shape.surface.V, plan.direction) : plan.direction));
       } else {
         const int mark = left ? plan.landmark : mirrored_landmark(plan.landmark);
         const Vector3d goal = guide.landmarks[static_cast<std::size_t>(mark)];
