@@ -39,11 +39,44 @@ Principal principal_axes(const MatrixX3d& points, const VectorXd& weights) {
   return p;
 }
 
-/// Tangent at x of the ellipse through x that is similar to the muscle's.
-Vector3d ellipse_tangent(const Principal& p, const Vector3d& x) {
-  const Vector3d local = p.axes.transpose() * (x - p.centre);
-  const double along = local[2] / p.variance[2], across = local[1] / p.variance[1];  // gradient of the quadric
-  return (p.axes.col(1) * along - p.axes.col(2) * across).stableNormalized();
+/// What a ring goes round: normal of the areas that its fibres span.
+Vector3d ring_normal(const Muscle& muscle, const Principal& p) {
+  Vector3d area = Vector3d::Zero();
+  for (const MatrixX3d& fibre : muscle.fibres)
+    for (Eigen::Index i = 0; i + 1 < fibre.rows(); ++i) {
+      const Vector3d a = fibre.row(i).transpose() - p.centre, b = fibre.row(i + 1).transpose() - p.centre;
+      area += a.cross(b);
+    }
+  return area.isZero(0) ? Vector3d(p.axes.col(0)) : area.normalized();
+}
+
+/// The way round a ring at each row of `points`: between the centres of the sectors on either side, of twelve equal
+/// ones in an ellipse. It follows the curve of lids and dental arch.
+MatrixX3d ring_axes(const Vector3d& normal, const Principal& p, const MatrixX3d& points, const VectorXd& weights) {
+  constexpr int sectors = 12;
+  const Vector3d right = (p.axes.col(2) - normal.dot(p.axes.col(2)) * normal).normalized();
+  const MatrixX3d from = points.rowwise() - p.centre.transpose();
+  VectorXd x = from * right, y = from * normal.cross(right);
+  x /= std::sqrt(x.cwiseAbs2().dot(weights));
+  y /= std::sqrt(y.cwiseAbs2().dot(weights));
+  std::vector<int> sector(static_cast<std::size_t>(points.rows()));
+  MatrixX3d centres = MatrixX3d::Zero(sectors, 3);
+  VectorXd sums = VectorXd::Zero(sectors);
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    const int k =
+        static_cast<int>(std::floor((std::atan2(y[i], x[i]) / (2 * std::numbers::pi) + 1) * sectors)) % sectors;
+    sector[static_cast<std::size_t>(i)] = k;
+    centres.row(k) += weights[i] * points.row(i);
+    sums[k] += weights[i];
+  }
+  for (int k = 0; k < sectors; ++k)
+    if (sums[k] > 0) centres.row(k) /= sums[k];
+  MatrixX3d axes(points.rows(), 3);
+  for (Eigen::Index i = 0; i < axes.rows(); ++i) {
+    const int k = sector[static_cast<std::size_t>(i)];
+    axes.row(i) = (centres.row((k + 1) % sectors) - centres.row((k + sectors - 1) % sectors)).stableNormalized();
+  }
+  return axes;
 }
 
 /// From end to end of the whole muscle.
@@ -135,8 +168,8 @@ MuscleFigures muscle_figures(const HeadTemplate& head, const Muscle& muscle) {
   weights = muscle.fraction.cwiseProduct(tet_volumes(head.volume.V, head.volume.T(muscle.tets, Eigen::all)));
   figures.volume = weights.sum();
   const Principal p = principal_axes(centres, weights);
-  MatrixX3d axes = own_axes(long_axis(muscle, p), p, centres, weights);
-  for (Eigen::Index i = 0; muscle.ring && i < axes.rows(); ++i) axes.row(i) = ellipse_tangent(p, centres.row(i));
+  const MatrixX3d axes = muscle.ring ? ring_axes(ring_normal(muscle, p), p, centres, weights)
+                                     : own_axes(long_axis(muscle, p), p, centres, weights);
   std::vector<std::pair<double, double>> angles;
   for (Eigen::Index i = 0; i < weights.size(); ++i) {
     const double along = std::min(1.0, std::abs(axes.row(i).dot(muscle.direction.row(i))));

@@ -102,6 +102,12 @@ TriangleMesh joined(std::span<const TriangleMesh> meshes) {
   return all;
 }
 
+MatrixX3d rows_of(const std::vector<Vector3d>& points) {
+  MatrixX3d rows(static_cast<Eigen::Index>(points.size()), 3);
+  for (std::size_t i = 0; i < points.size(); ++i) rows.row(static_cast<Eigen::Index>(i)) = points[i];
+  return rows;
+}
+
 std::vector<int> farthest_points(const MatrixX3d& points, Eigen::Index count) {
   std::vector<int> chosen{0};
   VectorXd distance = (points.rowwise() - points.row(0)).rowwise().squaredNorm();

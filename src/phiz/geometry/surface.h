@@ -30,6 +30,9 @@ double signed_volume(const MatrixX3d& V, const MatrixX3i& F);
 Vector3d volume_centroid(const MatrixX3d& V, const MatrixX3i& F);
 double mean_edge_length(const MatrixX3d& V, const MatrixX3i& F);
 
+/// Points as the rows of a matrix.
+MatrixX3d rows_of(const std::vector<Vector3d>& points);
+
 /// Up to `count` rows of points (at least one), each as far from those before it as any is (farthest point sampling);
 /// fewer when points coincide.
 std::vector<int> farthest_points(const MatrixX3d& points, Eigen::Index count);

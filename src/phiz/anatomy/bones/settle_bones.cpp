@@ -224,18 +224,28 @@ TriangleMesh bone_surface(const ScalarField& bone, const MatrixX3d& around, doub
   options.edge_length = std::min(edge_length, finest_shape);
   options.lipschitz = 1.5;
   options.projection_steps = 1;
-  const TriangleMesh mesh = main_part(polygonise(bone, bounds(around), options), name);
-  if (edge_length <= finest_shape) return mesh;
-  const double area = 0.5 * triangle_area_normals(mesh.V, mesh.F).rowwise().norm().sum();
+  const TriangleMesh even = main_part(polygonise(bone, bounds(around), options), name);
+  if (edge_length <= finest_shape) return even;
+  const double area = 0.5 * triangle_area_normals(even.V, even.F).rowwise().norm().sum();
   for (const double more : {1.0, 1.4, 2.0}) {
-    TriangleMesh fewer = decimate(mesh, static_cast<int>(more * area / (0.433 * edge_length * edge_length)));
+    TriangleMesh fewer = decimate(even, static_cast<int>(more * area / (0.433 * edge_length * edge_length)));
     if (self_intersections(fewer).empty()) return fewer;
   }
-  // Real bones have sheets and arches that decimation makes cross each other.
+  // Real bones have sheets and arches so thin that evening out and decimation make their sides cross. The zero set as
+  // it comes out of the lattice does not cross itself, and hardly does where edges stay in proportion to thickness.
+  options.edge_length = 0.6 * finest_shape;
+  options.improve = false;
+  options.projection_steps = 0;
+  const TriangleMesh raw = main_part(polygonise(bone, bounds(around), options), name);
   CoarsenOptions coarser;
   coarser.edge_length = [edge_length](const Vector3d&) { return edge_length; };
-  coarser.slenderness = 1.5;
-  return coarsen(mesh, coarser);
+  TriangleMesh fewer;
+  for (const double slenderness : {1.5, 1.0}) {
+    coarser.slenderness = slenderness;
+    fewer = coarsen(raw, coarser);
+    if (self_intersections(fewer).empty()) break;
+  }
+  return fewer;
 }
 
 BoneSurfaces settle_bones(const ClippedBones& fields, const TriangleMesh& simulated_skin, const BoneOptions& options) {

@@ -40,19 +40,33 @@ FleshLayer::FleshLayer(const FaceKitSkin& skin, const BoneSolids& bones)
       skin_(skin.mesh.V, outer_),
       floor_(floor_of(skin, bones)) {}
 
-Vector3d FleshLayer::into_flesh(const Vector3d& p) const {
+FleshLayer::Room FleshLayer::room_at(const Vector3d& p) const {
   constexpr double over = 0.0015, under = 0.0006, deepest = 0.05;
   const SurfacePoint near = skin_.closest_point(p);
-  Vector3d out = Vector3d::Zero();
-  for (int k = 0; k < 3; ++k) out += near.barycentric(k) * normals_.row(outer_(near.triangle, k)).transpose();
-  out.normalize();
-  const double depth = (near.position - p).dot(out);
-  const auto below = floor_.first_hit(near.position, -out, 1e-5, deepest);
+  Room room{near.position, Vector3d::Zero(), 0, 0};
+  for (int k = 0; k < 3; ++k) room.out += near.barycentric(k) * normals_.row(outer_(near.triangle, k)).transpose();
+  room.out.normalize();
+  const auto below = floor_.first_hit(near.position, -room.out, 1e-5, deepest);
   const double thickness = below ? below->t : deepest;
-  const double least = std::min(over, 0.35 * thickness), most = thickness - std::min(under, 0.2 * thickness);
-  if (depth >= least && depth <= most) return Vector3d::Zero();
+  room.least = std::min(over, 0.35 * thickness);
+  room.most = thickness - std::min(under, 0.2 * thickness);
+  return room;
+}
+
+Vector3d FleshLayer::into_flesh(const Vector3d& p) const {
+  const Room room = room_at(p);
+  const double depth = (room.skin - p).dot(room.out);
   // Sideways offsets, at folds, are left as they are.
-  return (depth - std::clamp(depth, least, most)) * out;
+  return (depth - std::clamp(depth, room.least, room.most)) * room.out;
+}
+
+Vector3d FleshLayer::all_into_flesh(const MatrixX3d& points) const {
+  const Room room = room_at(points.colwise().mean().transpose());
+  const VectorXd depth = -((points.rowwise() - room.skin.transpose()) * room.out);
+  const double low = depth.minCoeff(), high = depth.maxCoeff();
+  const double down = std::max(0.0, room.least - low), up = std::max(0.0, high - room.most);
+  const double deeper = high - low > room.most - room.least ? 0.5 * (room.least + room.most - low - high) : down - up;
+  return -deeper * room.out;
 }
 
 }  // namespace phiz

@@ -15,8 +15,18 @@ class FleshLayer {
   /// How to move p so that it lies in the flesh: at least 1.5 mm under the skin and 0.6 mm above what lies beneath,
   /// less where the flesh is thin. Zero when it does.
   Vector3d into_flesh(const Vector3d& p) const;
+  /// How to move points that lie together, as a whole, so that all of them do; evenly between skin and floor where there
+  /// is not room enough.
+  Vector3d all_into_flesh(const MatrixX3d& points) const;
 
  private:
+  /// Where flesh may be under the nearest place of the skin: between the depths `least` and `most`.
+  struct Room {
+    Vector3d skin, out;
+    double least, most;
+  };
+  Room room_at(const Vector3d& p) const;
+
   MatrixX3i outer_;
   MatrixX3d normals_;
   SurfaceQuery skin_, floor_;

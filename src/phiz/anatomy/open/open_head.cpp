@@ -197,6 +197,7 @@ HeadTemplate build_open_head(const FaceKit& kit, const BodyParts& parts, const O
   BoneOptions bone_options;
   bone_options.skull_edge = plan.skull_edge;
   bone_options.mandible_edge = plan.mandible_edge;
+  bone_options.inner_clearance = 0.0019;             // of which coarse triangles may take the half
   bone_options.joint_gap += 0.18 * plan.skull_edge;  // long triangles cut corners
   head.skin_sampling = sample_skin(skin.mesh, simulated.V);
   const SkinRegions regions = simulated_regions(skin, head.skin_sampling);

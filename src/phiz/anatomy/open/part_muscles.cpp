@@ -190,30 +190,32 @@ Rbf into_lips(const BodyParts& parts, const SpaceMap& map, const FaceGuide& guid
       anchors.emplace(std::tuple(cell[0], cell[1], cell[2]), p);
     }
   for (const auto& [cell, p] : anchors) add(p, p);
-  MatrixX3d centres(static_cast<Eigen::Index>(from.size()), 3), moves(centres.rows(), 3);
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    centres.row(static_cast<Eigen::Index>(i)) = from[i];
-    moves.row(static_cast<Eigen::Index>(i)) = to[i] - from[i];
-  }
-  return {centres, moves, RbfKernel::biharmonic, 0.002};
+  const MatrixX3d centres = rows_of(from);
+  return {centres, rows_of(to) - centres, RbfKernel::biharmonic, 0.002};
 }
 
 /// Moves muscles as wholes towards the flesh, smoothly in space, then what is still outside on its own.
 void settle(std::vector<MuscleShape>& shapes, const FleshLayer& layer) {
   constexpr double spacing = 0.009, smoothing = 0.01;
   for (int round = 0; round < 3; ++round) {
-    std::map<std::tuple<int, int, int>, Vector3d> samples;
+    std::map<std::tuple<int, int, int>, std::vector<Vector3d>> cells;  // what lies over each other moves together
     for (const MuscleShape& shape : shapes)
       for (Eigen::Index v = 0; v < shape.surface.V.rows(); ++v) {
         const Vector3d p = shape.surface.V.row(v);
         const Eigen::Array3i cell = (p.array() / spacing).floor().cast<int>();
-        samples.emplace(std::tuple(cell[0], cell[1], cell[2]), p);
+        cells[std::tuple(cell[0], cell[1], cell[2])].push_back(p);
       }
-    MatrixX3d centres(static_cast<Eigen::Index>(samples.size()), 3), moves(centres.rows(), 3);
-    Eigen::Index row = 0;
-    for (const auto& [cell, p] : samples) centres.row(row++) = p;
+    std::vector<MatrixX3d> clusters;
+    for (const auto& [cell, points] : cells) clusters.push_back(rows_of(points));
+    MatrixX3d centres(static_cast<Eigen::Index>(clusters.size()), 3), moves(centres.rows(), 3);
     parallel_for(
-        centres.rows(), [&](std::ptrdiff_t i) { moves.row(i) = layer.into_flesh(centres.row(i)); }, 16);
+        centres.rows(),
+        [&](std::ptrdiff_t i) {
+          const MatrixX3d& points = clusters[static_cast<std::size_t>(i)];
+          centres.row(i) = points.colwise().mean();
+          moves.row(i) = layer.all_into_flesh(points);
+        },
+        16);
     const Rbf displacement(centres, moves, RbfKernel::biharmonic, smoothing);
     for (MuscleShape& shape : shapes) shape.surface.V += displacement.evaluate(shape.surface.V);
   }

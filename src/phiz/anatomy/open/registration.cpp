@@ -194,12 +194,6 @@ class DepthGoals {
   MatrixX3d normals_;
 };
 
-MatrixX3d rows_of(const std::vector<Vector3d>& points) {
-  MatrixX3d rows(static_cast<Eigen::Index>(points.size()), 3);
-  for (std::size_t i = 0; i < points.size(); ++i) rows.row(static_cast<Eigen::Index>(i)) = points[i];
-  return rows;
-}
-
 }  // namespace
 
 BoneSolids solid_bones(const BodyParts& parts) {
