@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "elasticity/blocks.h"
@@ -201,6 +202,59 @@ TEST(Contact, AtRestForcesArePushesAlongTheNormalsOfTouchedPlanesAndVanishElsewh
   }
   EXPECT_GT(pushed, 5);
   EXPECT_GT(free, 5);
+}
+
+/// Two leaves with a common edge along y, the seam; the second stands at `angle` from the first. Their outer sides face
+/// each other when the angle is small.
+struct Hinge {
+  static constexpr int rows = 9, across = 3;
+  static constexpr double spacing = 1e-3;
+  MatrixX3i leaf, other_leaf;
+
+  Hinge() : leaf(triangles(0)), other_leaf(triangles(rows * across)) {
+    other_leaf = other_leaf.unaryExpr([](int v) { return on_seam(v) ? v - rows * across : v; });
+    other_leaf.col(1).swap(other_leaf.col(2));
+  }
+
+  static bool on_seam(int v) { return v % across == 0 && v >= rows * across; }
+
+  static MatrixX3i triangles(int first) {
+    std::vector<int> corners;
+    for (int r = 0; r + 1 < rows; ++r)
+      for (int c = 0; c + 1 < across; ++c) {
+        const int a = first + r * across + c;
+        corners.insert(corners.end(), {a, a + 1, a + 1 + across, a, a + 1 + across, a + across});
+      }
+    return Eigen::Map<Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>>(
+        corners.data(), static_cast<Eigen::Index>(corners.size() / 3), 3);
+  }
+
+  static MatrixX3d at(double angle) {
+    MatrixX3d V(2 * rows * across, 3);
+    for (int leaf = 0; leaf < 2; ++leaf)
+      for (int r = 0; r < rows; ++r)
+        for (int c = 0; c < across; ++c)
+          V.row((leaf * rows + r) * across + c) =
+              spacing * Eigen::RowVector3d(c * std::cos(leaf * angle), r, c * std::sin(leaf * angle));
+    return V;
+  }
+
+  /// Of the second leaf in the first.
+  double penetration(double angle) const {
+    const MatrixX3d rest = at(0.3);
+    ContactScene contacts(rest.rows());
+    const int obstacle = contacts.add_patch(rest, leaf), own = contacts.add_patch(rest, other_leaf);
+    contacts.add_pair(VectorXi::LinSpaced(rows * across, rows * across, 2 * rows * across - 1), obstacle, own, rest);
+    return contacts.penetration(at(angle));
+  }
+};
+
+TEST(Contact, LeavesThatCrossAtTheirHingePenetrateAndThoseThatOpenAllTheWayDoNot) {
+  const Hinge hinge;
+  EXPECT_EQ(hinge.penetration(0.1), 0);
+  EXPECT_NEAR(hinge.penetration(-0.3), (Hinge::across - 1) * Hinge::spacing * std::sin(0.3), 1e-12);
+  for (const double degrees : {90, 180, 260, 280, 300})
+    EXPECT_EQ(hinge.penetration(degrees * 3.14159265358979323846 / 180), 0) << degrees;
 }
 
 TEST(Contact, MultipliersSolveTheComplementarityProblem) {

@@ -30,6 +30,9 @@ struct Watch {
 constexpr double search_reach = 2.5e-3;  ///< beyond the margin; a longer search is seldom of use for the next call
 constexpr double hollow_reach = 3e-4;    ///< how near a second face must be to hold a vertex in a hollow, metres
 constexpr double same_side = 0.5;        ///< cosine above which a penetrating vertex faces as its obstacle does
+/// A vertex at an angle t behind a face has a way of cot(t/2) times its depth over the seam: with less than this it has
+/// not passed through the closed seam, but the seam has opened by more than three quarters of a turn.
+constexpr double least_detour = 2;
 
 }  // namespace
 
@@ -38,15 +41,19 @@ struct ContactScene::State {
   ContactOptions options;
   std::vector<Obstacle> obstacles;
   std::vector<Watch> watches;
+  std::vector<std::vector<int>> seams;  ///< per pair: edges of the obstacle that the vertices' own patch shares
   int pairs = 0;
   int left_out = 0;
 
-  /// Whether the closest point is a contact: not on the rim of a patch, not pushed through from behind.
-  bool is_contact(const Watch& watch, const std::optional<SignedContact>& closest) const {
+  /// Whether the closest point to a watched vertex at p is a contact: not on the rim of a patch, not pushed through
+  /// from behind, not beyond a seam that has opened past the plane of the face.
+  bool is_contact(const Watch& watch, const Vector3d& p, const std::optional<SignedContact>& closest) const {
     if (!closest || closest->on_rim || closest->gap < -options.depth_limit) return false;
-    return closest->gap >= 0 || watch.own_patch < 0 ||
-           obstacles[static_cast<std::size_t>(watch.own_patch)].normal_at(watch.vertex).dot(closest->normal) <=
-               same_side;
+    if (closest->gap >= 0 || watch.own_patch < 0) return true;
+    if (obstacles[static_cast<std::size_t>(watch.own_patch)].normal_at(watch.vertex).dot(closest->normal) > same_side)
+      return false;
+    const std::vector<int>& seam = seams[static_cast<std::size_t>(watch.pair)];
+    return seam.empty() || obstacle_of(watch).way_over(seam, p, *closest) >= -least_detour * closest->gap;
   }
 
   const Obstacle& obstacle_of(const Watch& watch) const { return obstacles[static_cast<std::size_t>(watch.obstacle)]; }
@@ -90,6 +97,10 @@ void ContactScene::add_pair(const VectorXi& vertices, int obstacle, int own_patc
   const auto count = static_cast<int>(state_->obstacles.size());
   if (obstacle < 0 || obstacle >= count || own_patch >= count)
     reject("contact pair", "names an obstacle that does not exist");
+  state_->seams.emplace_back();
+  if (own_patch >= 0)
+    state_->seams.back() = state_->obstacles[static_cast<std::size_t>(obstacle)].shared_edges(
+        state_->obstacles[static_cast<std::size_t>(own_patch)]);
   for (const int v : vertices) {
     if (v < 0 || v >= state_->vertex_count) reject("contact pair", "names a vertex that does not exist");
     if (state_->obstacles[static_cast<std::size_t>(obstacle)].has_vertex(v)) continue;  // where two patches meet
@@ -100,7 +111,7 @@ void ContactScene::add_pair(const VectorXi& vertices, int obstacle, int own_patc
     watch.pair = state_->pairs;
     const auto now =
         state_->obstacles[static_cast<std::size_t>(obstacle)].closest(rest.row(v), state_->options.depth_limit);
-    if (state_->is_contact(watch, now) && now->gap < 0) {
+    if (state_->is_contact(watch, rest.row(v), now) && now->gap < 0) {
       ++state_->left_out;
       continue;
     }
@@ -133,7 +144,7 @@ void ContactScene::State::search(Watch& watch, const Vector3d& p) const {
   const std::optional<SignedContact> nearest = obstacle.closest(p, reach, watch.hint);
   watch.hint = nearest ? nearest->triangle : -1;
   watch.contacts.clear();
-  if (is_contact(watch, nearest) && nearest->gap <= options.margin) {
+  if (is_contact(watch, p, nearest) && nearest->gap <= options.margin) {
     watch.contacts.push_back(*nearest);
     if (nearest->gap < hollow_reach)
       for (const SignedContact& second : obstacle.beside(p, *nearest, hollow_reach + std::abs(nearest->gap)))
@@ -220,7 +231,7 @@ double ContactScene::penetration(const PositionView& positions) const {
         const Vector3d p = positions[watch.vertex];
         if (s.clearance(watch, p) > 0) return;
         const auto contact = s.obstacle_of(watch).closest(p, s.options.depth_limit, watch.hint);
-        if (s.is_contact(watch, contact)) depth[static_cast<std::size_t>(i)] = std::max(0.0, -contact->gap);
+        if (s.is_contact(watch, p, contact)) depth[static_cast<std::size_t>(i)] = std::max(0.0, -contact->gap);
       },
       64);
   return depth.empty() ? 0.0 : *std::max_element(depth.begin(), depth.end());

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -108,6 +109,32 @@ void Obstacle::refit() {
 Vector3d Obstacle::point(const SignedContact& contact) const {
   const Vector3d p = (contact.barycentric.transpose() * V_(F_.row(contact.triangle), Eigen::all)).transpose();
   return is_rigid() ? Vector3d(transform_ * p) : p;
+}
+
+std::vector<int> Obstacle::shared_edges(const Obstacle& other) const {
+  std::vector<int> edges;
+  if (is_rigid() || other.is_rigid()) return edges;
+  const auto shared = [&](int v) { return other.has_vertex(vertices_[static_cast<std::size_t>(v)]); };
+  for (Eigen::Index f = 0; f < F_.rows(); ++f)
+    for (int k = 0; k < 3; ++k) {
+      const int a = F_(f, k), b = F_(f, (k + 1) % 3);
+      if (neighbours_(f, k) < 0 && shared(a) && shared(b)) edges.insert(edges.end(), {a, b});
+    }
+  return edges;
+}
+
+double Obstacle::way_over(const std::vector<int>& edges, const Vector3d& p, const SignedContact& closest) const {
+  const Vector3d q = point(closest);
+  double shortest = std::numeric_limits<double>::infinity();
+  for (std::size_t e = 0; e < edges.size(); e += 2) {
+    const Vector3d a = V_.row(edges[e]), along = V_.row(edges[e + 1]).transpose() - a;
+    const double length2 = std::max(along.squaredNorm(), std::numeric_limits<double>::min());
+    for (const Vector3d& end : {p, q}) {
+      const Vector3d s = a + std::clamp(along.dot(end - a) / length2, 0.0, 1.0) * along;
+      shortest = std::min(shortest, (p - s).norm() + (s - q).norm());
+    }
+  }
+  return shortest;
 }
 
 std::optional<SignedContact> Obstacle::closest(const Vector3d& point, double reach, int hint) const {

@@ -49,6 +49,12 @@ class Obstacle {
   /// Where the point of a contact is now, by its triangle and barycentric coordinates.
   Vector3d point(const SignedContact& contact) const;
 
+  /// Pairs of own vertices: edges of the rim whose ends are vertices of `other` too.
+  std::vector<int> shared_edges(const Obstacle& other) const;
+  /// Length of the way from a point by `edges` (pairs of own vertices) to the closest point of the obstacle, metres, a
+  /// little more than the shortest.
+  double way_over(const std::vector<int>& edges, const Vector3d& point, const SignedContact& closest) const;
+
   bool has_vertex(int vertex) const;
   /// Outward normal at body vertex `vertex`, zero if it is not one of the obstacle's.
   Vector3d normal_at(int vertex) const;
