@@ -17,7 +17,7 @@ using SkinRegions = std::map<std::string, VectorXi>;
 /// come first in head.volume; needed are upperLip, lowerLip, upperLipInner, lowerLipInner, mouthBag, oralRoof,
 /// oralFloor, and for either side leftUpperLid, leftLowerLid, leftUpperLidMargin, leftLowerLidMargin. Uses
 /// head.skin_triangles and the parts; gums that are no closed surface are no obstacles. Vertices that lie inside of
-/// their obstacle at rest are not checked against gums.
+/// their obstacle at rest are not checked against gums; regions without a triangle, as on coarse skins, are left out.
 void assign_contacts(HeadTemplate& head, const SkinRegions& regions);
 
 }  // namespace phiz

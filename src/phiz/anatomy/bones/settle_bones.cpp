@@ -240,7 +240,7 @@ TriangleMesh bone_surface(const ScalarField& bone, const MatrixX3d& around, doub
   CoarsenOptions coarser;
   coarser.edge_length = [edge_length](const Vector3d&) { return edge_length; };
   TriangleMesh fewer;
-  for (const double slenderness : {1.5, 1.0}) {
+  for (const double slenderness : {2.5, 1.5, 1.0}) {
     coarser.slenderness = slenderness;
     fewer = coarsen(raw, coarser);
     if (self_intersections(fewer).empty()) break;

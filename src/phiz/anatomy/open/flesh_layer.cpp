@@ -2,7 +2,6 @@
 #include "phiz/anatomy/open/flesh_layer.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -26,15 +25,15 @@ MatrixX3i sheet(const FaceKitSkin& skin, bool inner) {
   return skin.mesh.F(rows, Eigen::all);
 }
 
-TriangleMesh floor_of(const FaceKitSkin& skin, const BoneSolids& bones) {
-  return joined(std::array{TriangleMesh{skin.mesh.V, sheet(skin, true), {}, {}},
-                           TriangleMesh{bones.skull.V, bones.skull.F, {}, {}},
-                           TriangleMesh{bones.mandible.V, bones.mandible.F, {}, {}}});
+TriangleMesh floor_of(const FaceKitSkin& skin, std::span<const TriangleMesh> bones) {
+  std::vector<TriangleMesh> sheets{{skin.mesh.V, sheet(skin, true), {}, {}}};
+  for (const TriangleMesh& bone : bones) sheets.push_back({bone.V, bone.F, {}, {}});
+  return joined(sheets);
 }
 
 }  // namespace
 
-FleshLayer::FleshLayer(const FaceKitSkin& skin, const BoneSolids& bones)
+FleshLayer::FleshLayer(const FaceKitSkin& skin, std::span<const TriangleMesh> bones)
     : outer_(sheet(skin, false)),
       normals_(vertex_normals(skin.mesh.V, outer_)),
       skin_(skin.mesh.V, outer_),

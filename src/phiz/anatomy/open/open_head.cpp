@@ -36,7 +36,7 @@ struct SizePlan {
   int skin_vertices;
   double skull_edge, mandible_edge;
 };
-constexpr std::array<SizePlan, 3> plans{{{1350, 0.0120, 0.0090}, {5900, 0.0090, 0.0060}, {12500, 0.0050, 0.0036}}};
+constexpr std::array<SizePlan, 3> plans{{{1250, 0.0150, 0.0110}, {5900, 0.0090, 0.0060}, {12500, 0.0050, 0.0036}}};
 
 /// Outer skin and inner sheets of a skin.
 BoneEnvelope envelope(const TriangleMesh& skin, const SkinRegions& regions) {
@@ -235,7 +235,8 @@ HeadTemplate build_open_head(const FaceKit& kit, const BodyParts& parts, const O
   const Proportions proportions = translated(guide.proportions, to_condyles);
   head.skull_landmarks = find_skull_landmarks(head, proportions);
   report("muscles");
-  std::vector<MuscleShape> shapes = part_muscles(parts, map, guide, skin, {skull, mandible});
+  std::vector<MuscleShape> shapes =
+      part_muscles(parts, map, guide, skin, std::array{skull, mandible, bones.skull, bones.mandible});
   for (MuscleShape& shape : shapes) translate(shape, to_condyles);
   add_drawn_muscles(shapes, head, proportions, mandible.V.rowwise() + to_condyles.transpose());
   head.muscles = make_muscles(head.volume, shapes, {.widest_gap = 0.008});

@@ -146,7 +146,8 @@ void set_ends_of_halves(MuscleShape& shape, const VectorXd& along) {
 
 /// Brings the ring of the lips into the lips of the face: the edges of its opening under the line where they meet, its
 /// corners under the corners of the mouth. Far away nothing moves.
-Rbf into_lips(const BodyParts& parts, const SpaceMap& map, const FaceGuide& guide, const BoneSolids& bones) {
+Rbf into_lips(const BodyParts& parts, const SpaceMap& map, const FaceGuide& guide,
+              std::span<const TriangleMesh> bones) {
   constexpr int lips = 59815;
   const int ring = parts_of("orbicularisOris").front();
   constexpr double middle = 0.002, under = 0.003, still = 0.028, spacing = 0.012;
@@ -182,9 +183,9 @@ Rbf into_lips(const BodyParts& parts, const SpaceMap& map, const FaceGuide& guid
   add(L.row(right), guide.landmarks[60] + Vector3d(0, 0, -0.001));
   const Vector3d mouth = guide.landmarks[66];
   std::map<std::tuple<int, int, int>, Vector3d> anchors;
-  for (const TriangleMesh* bone : {&bones.skull, &bones.mandible})
-    for (Eigen::Index v = 0; v < bone->V.rows(); ++v) {
-      const Vector3d p = bone->V.row(v);
+  for (const TriangleMesh& bone : bones)
+    for (Eigen::Index v = 0; v < bone.V.rows(); ++v) {
+      const Vector3d p = bone.V.row(v);
       if ((p - mouth).norm() < still) continue;
       const Eigen::Array3i cell = (p.array() / spacing).floor().cast<int>();
       anchors.emplace(std::tuple(cell[0], cell[1], cell[2]), p);
@@ -242,7 +243,7 @@ void settle(std::vector<MuscleShape>& shapes, const FleshLayer& layer) {
 }  // namespace
 
 std::vector<MuscleShape> part_muscles(const BodyParts& parts, const SpaceMap& map, const FaceGuide& guide,
-                                      const FaceKitSkin& skin, const BoneSolids& bones) {
+                                      const FaceKitSkin& skin, std::span<const TriangleMesh> bones) {
   std::vector<MuscleShape> shapes;
   const auto add = [&shapes](const std::string& name) -> MuscleShape& {
     shapes.push_back({name, {}, {}, {}});
