@@ -157,6 +157,27 @@ TEST(ImproveTets, GiveMovesSurfacesNoFartherThanAllowed) {
   EXPECT_LE(farthest, 0.0015 + 1e-12);
 }
 
+TEST(SmoothTets, KeepsRowsAndTurnsInvertedTetsBack) {
+  Nasty nasty = nasty_balls();
+  TetMesh& mesh = nasty.mesh;
+  // An inner vertex through a face of one of its tets.
+  for (Eigen::Index t = 0; t < mesh.T.rows(); ++t)
+    if (mesh.T(t, 0) == nasty.surface) {
+      const Eigen::RowVector3d opposite =
+          mesh.V({mesh.T(t, 1), mesh.T(t, 2), mesh.T(t, 3)}, Eigen::all).colwise().mean();
+      mesh.V.row(nasty.surface) += 1.2 * (opposite - mesh.V.row(nasty.surface));
+      break;
+    }
+  ASSERT_LE(tet_volumes(mesh.V, mesh.T).minCoeff(), 0);
+  const TetMesh before = mesh;
+  const double worst = smooth_tets(mesh, {});
+  EXPECT_GT(worst, 0);
+  EXPECT_GT(tet_volumes(mesh.V, mesh.T).minCoeff(), 0);
+  EXPECT_LE(worst, tet_quality(mesh).min_dihedral + 1e-9);
+  EXPECT_EQ(mesh.T, before.T);
+  EXPECT_EQ(mesh.V.topRows(nasty.surface), before.V.topRows(nasty.surface));
+}
+
 TEST(ImproveTets, NamesWhatItRefuses) {
   TetMesh mesh;
   mesh.V.resize(4, 3);

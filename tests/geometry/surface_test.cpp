@@ -144,5 +144,11 @@ TEST(SelfIntersections, FindCrossingBoxesFoldsAndDuplicates) {
   EXPECT_EQ(self_intersections(fold).size(), 1U);
 }
 
+TEST(Surface, FarthestPointsSpreadOut) {
+  const MatrixX3d points = rows_of({{0, 0, 0}, {1, 0, 0}, {4, 0, 0}, {4, 0, 0}, {2, 0, 0}});
+  EXPECT_EQ(farthest_points(points, 3), (std::vector<int>{0, 2, 4}));
+  EXPECT_EQ(farthest_points(points, 9), (std::vector<int>{0, 2, 4, 1})) << "the point that coincides is left out";
+}
+
 }  // namespace
 }  // namespace phiz

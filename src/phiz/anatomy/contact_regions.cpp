@@ -61,6 +61,30 @@ void release_vertices_inside(HeadTemplate& head, const std::string& part) {
   }
 }
 
+ContactRegion& contact_of(HeadTemplate& head, const std::string& name) {
+  return *std::find_if(head.contact_regions.begin(), head.contact_regions.end(),
+                       [&name](const ContactRegion& contact) { return contact.name == name; });
+}
+
+/// Takes the vertices near the other margin at rest out of the margins of lids: at the corners of the eye the lids are
+/// one skin that folds, and being behind the other's plane is no penetration.
+void release_canthi(HeadTemplate& head, const std::string& side) {
+  constexpr double corner = 0.003;  // metres
+  ContactRegion &upper = contact_of(head, side + "UpperLidMargin"), &lower = contact_of(head, side + "LowerLidMargin");
+  const VectorXi above = upper.vertices, below = lower.vertices;
+  const auto keep_far = [&head](VectorXi& vertices, const VectorXi& others) {
+    const MatrixX3d V = head.volume.V(others, Eigen::all);
+    Eigen::Index kept = 0;
+    for (const int v : vertices)
+      if ((V.rowwise() - head.volume.V.row(v)).rowwise().squaredNorm().minCoeff() > corner * corner)
+        vertices(kept++) = v;
+    vertices.conservativeResize(kept);
+  };
+  if (above.size() == 0 || below.size() == 0) return;
+  keep_far(upper.vertices, below);
+  keep_far(lower.vertices, above);
+}
+
 }  // namespace
 
 void assign_contacts(HeadTemplate& head, const SkinRegions& regions) {
@@ -88,6 +112,8 @@ void assign_contacts(HeadTemplate& head, const SkinRegions& regions) {
     add(margin, flags(regions, {margin.c_str()}, n));
     head.contact_regions.back().extended = true;
   }
+
+  for (const std::string side : {"left", "right"}) release_canthi(head, side);
 
   std::vector<std::string> hard{"upperTeeth", "lowerTeeth"};
   for (const char* gums : {"upperGums", "lowerGums"}) {

@@ -16,8 +16,8 @@ using SkinRegions = std::map<std::string, VectorXi>;
 /// against teeth and gums, lids against eyes and each other). `regions`: those of the simulation skin, whose vertices
 /// come first in head.volume; needed are upperLip, lowerLip, upperLipInner, lowerLipInner, mouthBag, oralRoof,
 /// oralFloor, and for either side leftUpperLid, leftLowerLid, leftUpperLidMargin, leftLowerLidMargin. Uses
-/// head.skin_triangles and the parts; gums that are no closed surface are no obstacles. Vertices that lie inside of
-/// their obstacle at rest are not checked against gums; regions without a triangle, as on coarse skins, are left out.
+/// head.skin_triangles and the parts; gums that are no closed surface are no obstacles. Left out are: vertices inside
+/// of gums at rest; the corners of the eyes, for lid against lid; regions without a triangle, as on coarse skins.
 void assign_contacts(HeadTemplate& head, const SkinRegions& regions);
 
 }  // namespace phiz

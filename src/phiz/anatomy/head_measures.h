@@ -40,7 +40,7 @@ struct MuscleFigures {
   /// times the second) is the first principal axis of its volume; that of a sheet, which may be broader than long,
   /// leads from where its fibres begin on average to where they end. As muscles bend round the cheek and the jaw, the
   /// own axis at a place joins the centres of the thirds of the volume, cut across the long axis, on either side of it.
-  /// In a ring it is the tangent of the ellipse through the place that has the principal axes of the muscle's volume.
+  /// In a ring it joins the centres of the sectors on either side, of twelve round the normal of what its fibres span.
   double angle = 0;
 };
 MuscleFigures muscle_figures(const HeadTemplate& head, const Muscle& muscle);

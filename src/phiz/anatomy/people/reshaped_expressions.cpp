@@ -4,10 +4,38 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "phiz/core/parallel.h"
 
 namespace phiz {
+
+namespace {
+
+/// Stretches a blink (`e`, already turned to the person) so that the upper lid's margin comes as near to the lower one
+/// on the whole, or as far past it, as it does in the head: openings of eyes differ more than a smooth gradient tells.
+void meet_lids(const HeadTemplate& head, const Expression& before, const MatrixX3d& skin, const std::string& side,
+               Expression& e) {
+  const auto upper = head.skin_regions.find(side + "UpperLidMargin");
+  const auto lower = head.skin_regions.find(side + "LowerLidMargin");
+  if (upper == head.skin_regions.end() || lower == head.skin_regions.end()) return;
+  const MatrixX3d closed = head.skin.V + before.displacement, now = skin + e.displacement;
+  double lacking = 0, closing = 0;
+  for (const int u : upper->second) {
+    const Vector3d d = e.displacement.row(u);
+    int nearest = lower->second[0];
+    for (const int l : lower->second)
+      if ((closed.row(u) - closed.row(l)).squaredNorm() < (closed.row(u) - closed.row(nearest)).squaredNorm())
+        nearest = l;
+    const Vector3d wanted = closed.row(u) - closed.row(nearest), is = now.row(u) - now.row(nearest);
+    lacking += (wanted - is).dot(d);
+    closing += d.squaredNorm();
+  }
+  constexpr double most = 0.4;
+  if (closing > 0) e.displacement *= 1 + std::clamp(lacking / closing, -most, most);
+}
+
+}  // namespace
 
 std::vector<Matrix3d> local_gradients(const MatrixX3d& points, const MatrixX3d& displacement, const MatrixX3d& at,
                                       double reach) {
@@ -51,7 +79,8 @@ std::vector<Expression> reshaped_expressions(const HeadTemplate& head, const Mat
   const std::vector<Matrix3d> gradients =
       local_gradients(head.skin_sampling * rest, head.skin_sampling * (skin - rest), rest, reach);
   std::vector<Expression> expressions = head.expressions;
-  for (Expression& e : expressions) {
+  for (std::size_t i = 0; i < expressions.size(); ++i) {
+    Expression& e = expressions[i];
     const Eigen::Isometry3d before = jaw_transform(head.jaw, e.jaw), after = jaw_transform(joint, e.jaw);
     constexpr double still = 1e-6;  // metres squared: near the axis the jaw moves nothing
     for (Eigen::Index v = 0; v < rest.rows(); ++v) {
@@ -62,6 +91,8 @@ std::vector<Expression> reshaped_expressions(const HeadTemplate& head, const Mat
       const double share = std::clamp(d.dot(by_jaw) / (by_jaw.squaredNorm() + still), 0.0, 1.0);
       e.displacement.row(v) = share * (after * q - q) + gradients[static_cast<std::size_t>(v)] * (d - share * by_jaw);
     }
+    if (e.name == "eyeBlinkLeft") meet_lids(head, head.expressions[i], skin, "left", e);
+    if (e.name == "eyeBlinkRight") meet_lids(head, head.expressions[i], skin, "right", e);
   }
   return expressions;
 }
