@@ -31,9 +31,13 @@ void make_builtin(const BuiltinArguments& arguments) {
   BuiltinOptions options;
   options.size = head_size(arguments.size);
   options.person = arguments.person;
-  options.report = announce;
   require_writable(arguments.output);
-  const HeadTemplate head = build_builtin_head(options);
+  HeadTemplate head;
+  {
+    Progress progress("built-in head", builtin_head_steps);
+    options.report = [&progress](const std::string& step) { progress.begin(step); };
+    head = build_builtin_head(options);
+  }
   save_and_report(arguments.output, head, start, arguments.report, "", nlohmann::json::object());
 }
 

@@ -52,31 +52,36 @@ std::filesystem::path cached_head(const BuildArguments& a) {
                               fingerprint_face_kit(a.ict), fingerprint_body_parts(a.bodyparts3d));
 }
 
-void make_open_head(const BuildArguments& arguments) {
-  const auto start = std::chrono::steady_clock::now();
+/// Builds the head, or takes it from the cache.
+HeadTemplate open_head(const BuildArguments& arguments, bool& cached) {
+  Progress progress("open head", open_head_steps + 3);
+  progress.begin("look at the data");
+  const std::filesystem::path kept = cached_head(arguments);
+  std::error_code error;
+  cached = !arguments.fresh && !kept.empty() && std::filesystem::exists(kept, error);
+  if (cached) return load_head_template(kept.string());
+  progress.begin("read the data");
+  const BodyParts parts = read_body_parts(arguments.bodyparts3d);
+  const FaceKit kit = read_face_kit(arguments.ict);
   OpenHeadOptions options;
   options.size = head_size(arguments.size);
-  options.report = announce;
+  options.report = [&progress](const std::string& step) { progress.begin(step); };
+  HeadTemplate head = build_open_head(kit, parts, options);
+  progress.begin("keep in the cache");
+  if (!kept.empty()) {
+    std::filesystem::create_directories(kept.parent_path(), error);
+    if (!error) save(kept.string(), head);
+  }
+  return head;
+}
+
+void make_open_head(const BuildArguments& arguments) {
+  const auto start = std::chrono::steady_clock::now();
   require_writable(arguments.output);
   for (const std::string& folder : {arguments.ict, arguments.bodyparts3d})
     if (!std::filesystem::is_directory(folder)) reject(folder, "there is no such folder");
-  announce("look at the data");
-  const std::filesystem::path kept = cached_head(arguments);
-  std::error_code error;
-  const bool cached = !arguments.fresh && !kept.empty() && std::filesystem::exists(kept, error);
-  HeadTemplate head;
-  if (cached) {
-    head = load_head_template(kept.string());
-  } else {
-    announce("read the data");
-    const BodyParts parts = read_body_parts(arguments.bodyparts3d);
-    const FaceKit kit = read_face_kit(arguments.ict);
-    head = build_open_head(kit, parts, options);
-    if (!kept.empty()) {
-      std::filesystem::create_directories(kept.parent_path(), error);
-      if (!error) save(kept.string(), head);
-    }
-  }
+  bool cached = false;
+  const HeadTemplate head = open_head(arguments, cached);
   save_and_report(arguments.output, head, start, arguments.report, cached ? " (from the cache)" : "",
                   {{"cached", cached}});
 }

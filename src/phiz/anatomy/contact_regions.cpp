@@ -66,23 +66,28 @@ ContactRegion& contact_of(HeadTemplate& head, const std::string& name) {
                        [&name](const ContactRegion& contact) { return contact.name == name; });
 }
 
-/// Takes the vertices near the other margin at rest out of the margins of lids: at the corners of the eye the lids are
-/// one skin that folds, and being behind the other's plane is no penetration.
+/// Takes the vertices at the corners of the eye out of the margins of its lids: there the lids are one skin that folds,
+/// and being behind the other's plane is no penetration.
 void release_canthi(HeadTemplate& head, const std::string& side) {
-  constexpr double corner = 0.003;  // metres
+  constexpr double corner = 0.003, end = 0.12;  // metres from the other lid; share of the length
   ContactRegion &upper = contact_of(head, side + "UpperLidMargin"), &lower = contact_of(head, side + "LowerLidMargin");
+  if (upper.vertices.size() == 0 || lower.vertices.size() == 0) return;
   const VectorXi above = upper.vertices, below = lower.vertices;
-  const auto keep_far = [&head](VectorXi& vertices, const VectorXi& others) {
-    const MatrixX3d V = head.volume.V(others, Eigen::all);
+  const MatrixX3d& V = head.volume.V;
+  const double right = std::min(V(above, 0).minCoeff(), V(below, 0).minCoeff());
+  const double left = std::max(V(above, 0).maxCoeff(), V(below, 0).maxCoeff());
+  const auto keep_middle = [&](VectorXi& vertices, const VectorXi& others) {
+    const MatrixX3d other = V(others, Eigen::all);
     Eigen::Index kept = 0;
-    for (const int v : vertices)
-      if ((V.rowwise() - head.volume.V.row(v)).rowwise().squaredNorm().minCoeff() > corner * corner)
-        vertices(kept++) = v;
+    for (const int v : vertices) {
+      const double along = (V(v, 0) - right) / (left - right);
+      const double away = (other.rowwise() - V.row(v)).rowwise().norm().minCoeff();
+      if (along > end && along < 1 - end && away > corner) vertices(kept++) = v;
+    }
     vertices.conservativeResize(kept);
   };
-  if (above.size() == 0 || below.size() == 0) return;
-  keep_far(upper.vertices, below);
-  keep_far(lower.vertices, above);
+  keep_middle(upper.vertices, below);
+  keep_middle(lower.vertices, above);
 }
 
 }  // namespace

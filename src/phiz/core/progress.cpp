@@ -7,6 +7,7 @@
 #include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <exception>
 #include <utility>
 
 namespace phiz {
@@ -42,6 +43,7 @@ Progress::Progress(std::string task, std::ptrdiff_t total)
     : task_(std::move(task)), total_(total), start_(std::chrono::steady_clock::now()), drawn_(start_) {}
 
 Progress::~Progress() {
+  if (!step_.empty() && std::uncaught_exceptions() == 0) ++done_;
   draw(true);
 }
 
@@ -59,19 +61,26 @@ void Progress::advance(std::ptrdiff_t steps) {
   }
 }
 
+void Progress::begin(const std::string& step) {
+  if (!step_.empty()) ++done_;
+  step_ = step;
+  draw(false);
+}
+
 void Progress::draw(bool last) {
   if (quiet_flag) return;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const double share = total_ > 0 ? std::min(1.0, static_cast<double>(done_) / static_cast<double>(total_)) : 1.0;
+  const std::string what = step_.empty() ? task_ : last && done_ == total_ ? task_ + ": done" : task_ + ": " + step_;
   if (is_terminal()) {
     constexpr int width = 30;
     const int filled = static_cast<int>(share * width);
-    std::fprintf(stderr, "\r%-26s [%.*s%*s] %3d%% %td/%td %.1f s", task_.c_str(), filled,
+    std::fprintf(stderr, "\r%-34s [%.*s%*s] %3d%% %td/%td %.1f s\033[K", what.c_str(), filled,
                  "##############################", width - filled, "", static_cast<int>(share * 100), done_, total_,
                  seconds);
     if (last) std::fputc('\n', stderr);
   } else {
-    std::fprintf(stderr, "%s: %td/%td, %.1f s\n", task_.c_str(), done_, total_, seconds);
+    std::fprintf(stderr, "%s: %td/%td, %.1f s\n", what.c_str(), done_, total_, seconds);
   }
   std::fflush(stderr);
 }

@@ -17,13 +17,15 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   void advance(std::ptrdiff_t steps = 1);
+  /// For steps with names: the one before, if there was one, is done, and `step` begins. Shown at once.
+  void begin(const std::string& step);
 
   static void set_quiet(bool quiet);
 
  private:
   void draw(bool last);
 
-  std::string task_;
+  std::string task_, step_;
   std::ptrdiff_t total_;
   std::ptrdiff_t done_ = 0;
   std::chrono::steady_clock::time_point start_;

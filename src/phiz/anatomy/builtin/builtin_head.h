@@ -14,6 +14,8 @@
 
 namespace phiz {
 
+inline constexpr int builtin_head_steps = 6;  ///< how often `report` is called
+
 struct BuiltinOptions {
   HeadSize size = HeadSize::standard;
   std::optional<std::uint64_t> person;             ///< seed of a random person; the mean person without

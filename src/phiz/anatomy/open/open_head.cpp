@@ -203,10 +203,7 @@ HeadTemplate build_open_head(const FaceKit& kit, const BodyParts& parts, const O
   const SkinRegions regions = simulated_regions(skin, head.skin_sampling);
   const BoneSurfaces bones = settle_bones(
       clip_bones(skull_shape, mandible_shape, envelope(simulated, regions), bone_options), simulated, bone_options);
-  if (options.report)
-    options.report("tetrahedra between a skin of " + std::to_string(simulated.F.rows()) + ", a skull of " +
-                   std::to_string(bones.skull.F.rows()) + " and a mandible of " +
-                   std::to_string(bones.mandible.F.rows()) + " triangles");
+  report("tetrahedra");
   build_volume(head, simulated, regions.at("shoulders"), bones, options.size);
 
   report("skin maps and parts");

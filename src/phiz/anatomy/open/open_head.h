@@ -12,6 +12,8 @@
 
 namespace phiz {
 
+inline constexpr int open_head_steps = 10;  ///< how often `report` is called
+
 struct OpenHeadOptions {
   HeadSize size = HeadSize::standard;
   std::function<void(const std::string&)> report;  ///< told what is being done, when set
