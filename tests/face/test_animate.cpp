@@ -12,7 +12,13 @@ namespace phiz {
 namespace {
 
 const FaceModel& model() {
-  static const FaceModel instance = build_volumetric_blendshapes(testing::small_head());
+  static const FaceModel instance = [] {
+    BlendshapeOptions options;  // stiffer than the default: the toy's sculpts lose more volume than those of heads
+    options.volume = 100;
+    options.hold = 30;
+    options.inner_hold = 0.02;
+    return build_volumetric_blendshapes(testing::small_head(), options);
+  }();
   return instance;
 }
 

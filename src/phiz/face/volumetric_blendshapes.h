@@ -12,11 +12,11 @@ namespace phiz {
 
 struct BlendshapeOptions {
   double shape = 1;      ///< weight of as-rigid-as-possible elasticity (mu of eq. 5.6, 5.7)
-  double volume = 100;   ///< weight of the volume term (lambda); the source's ratio lambda = 10 mu
+  double volume = 50;    ///< weight of the volume term (lambda); the source's ratio is lambda = 10 mu
   double transfer = 10;  ///< weight of the transferred skin gradients in the first solve (eq. 5.5)
   double hold =
-      30;  ///< pull of the sculpted skin: hold * stiffness per metre of skin distance and millimetre, see .cpp
-  double inner_hold = 0.02;      ///< share of it on skin that is not seen: the mouth's bag
+      60;  ///< pull of the sculpted skin: hold * stiffness per metre of skin distance and millimetre, see .cpp
+  double inner_hold = 0.004;     ///< share of it on skin that is not seen: the mouth's bag
   int max_iterations = 150;      ///< of each of the two solves
   double step_tolerance = 2e-6;  ///< metres
   double least_strain = 2e-4;    ///< tets whose rotation and stretch stay below this are not kept
