@@ -20,11 +20,27 @@ const VectorXi& region(const SkinRegions& regions, const std::string& name) {
   return found->second;
 }
 
-Flags flags(const SkinRegions& regions, std::initializer_list<const char*> names, Eigen::Index count) {
+Flags flags(const SkinRegions& regions, std::initializer_list<std::string> names, Eigen::Index count) {
   Flags result(count, 0);
-  for (const char* name : names)
+  for (const std::string& name : names)
     for (const int v : region(regions, name)) result[v] = 1;
   return result;
+}
+
+/// Where two regions meet they share vertices, by which contact knows their seam: `one` takes those of `other` in the
+/// triangles between them.
+void share_seam(Flags& one, const Flags& other, const MatrixX3i& triangles) {
+  const Flags before = one;
+  for (Eigen::Index f = 0; f < triangles.rows(); ++f) {
+    bool all = true, own = false, foreign = false;
+    for (int k = 0; k < 3; ++k) {
+      const auto v = static_cast<std::size_t>(triangles(f, k));
+      all = all && (before[v] || other[v]);
+      own = own || (before[v] && !other[v]);
+      foreign = foreign || (other[v] && !before[v]);
+    }
+    for (int k = 0; k < 3 && all && own && foreign; ++k) one[static_cast<std::size_t>(triangles(f, k))] = 1;
+  }
 }
 
 /// The vertices of the triangles whose corners are all flagged, and those triangles.
@@ -69,7 +85,7 @@ ContactRegion& contact_of(HeadTemplate& head, const std::string& name) {
 /// Takes the vertices at the corners of the eye out of the margins of its lids: there the lids are one skin that folds,
 /// and being behind the other's plane is no penetration.
 void release_canthi(HeadTemplate& head, const std::string& side) {
-  constexpr double corner = 0.003, end = 0.12;  // metres from the other lid; share of the length
+  constexpr double corner = 0.003, end = 0.25;  // metres from the other lid; share of the length
   ContactRegion &upper = contact_of(head, side + "UpperLidMargin"), &lower = contact_of(head, side + "LowerLidMargin");
   if (upper.vertices.size() == 0 || lower.vertices.size() == 0) return;
   const VectorXi above = upper.vertices, below = lower.vertices;
@@ -97,8 +113,11 @@ void assign_contacts(HeadTemplate& head, const SkinRegions& regions) {
   const auto add = [&](const std::string& name, const Flags& inside) {
     head.contact_regions.push_back(contact_region(name, inside, head.skin_triangles));
   };
-  add("upperLip", flags(regions, {"upperLip", "upperLipInner"}, n));
-  add("lowerLip", flags(regions, {"lowerLip", "lowerLipInner"}, n));
+  Flags upper = flags(regions, {"upperLip", "upperLipInner"}, n);
+  const Flags lower = flags(regions, {"lowerLip", "lowerLipInner"}, n);
+  share_seam(upper, lower, head.skin_triangles);
+  add("upperLip", upper);
+  add("lowerLip", lower);
   // Cheeks: what is left of the bag's wall beside the teeth.
   const Flags lips = flags(regions, {"upperLip", "lowerLip"}, n);
   const Flags ends = flags(regions, {"oralRoof", "oralFloor"}, n);
@@ -111,14 +130,14 @@ void assign_contacts(HeadTemplate& head, const SkinRegions& regions) {
   }
   add("leftCheek", left);
   add("rightCheek", right);
-  for (const std::string lid : {"leftUpperLid", "leftLowerLid", "rightUpperLid", "rightLowerLid"}) {
-    add(lid, flags(regions, {lid.c_str()}, n));
-    const std::string margin = lid + "Margin";
-    add(margin, flags(regions, {margin.c_str()}, n));
-    head.contact_regions.back().extended = true;
+  for (const std::string side : {"left", "right"}) {
+    for (const std::string& lid : {side + "UpperLid", side + "LowerLid"}) add(lid, flags(regions, {lid}, n));
+    for (const std::string& margin : {side + "UpperLidMargin", side + "LowerLidMargin"}) {
+      add(margin, flags(regions, {margin}, n));
+      head.contact_regions.back().extended = true;
+    }
+    release_canthi(head, side);
   }
-
-  for (const std::string side : {"left", "right"}) release_canthi(head, side);
 
   std::vector<std::string> hard{"upperTeeth", "lowerTeeth"};
   for (const char* gums : {"upperGums", "lowerGums"}) {
