@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "command.h"
+#include "phiz/io/take_file.h"
 
 namespace phiz::testing {
 namespace {
@@ -54,6 +57,47 @@ TEST(OpenHead, IsBuiltFromOpenDataAndPassesItsGates) {
   ASSERT_EQ(built.code, 0) << built.err;
   const Outcome checked = phiz_command({"template", "check", scratch / "open.phiz"});
   EXPECT_EQ(checked.code, 0) << checked.out << checked.err;
+}
+
+TEST(OpenHead, PreviewAndItsPeoplePlayTheRecording) {
+  const std::string recording = "../shared/data/performance-livelink/dao.csv";
+  if (!std::filesystem::exists(face_kit) || !std::filesystem::exists(body_parts) || !std::filesystem::exists(recording))
+    GTEST_SKIP() << "no open data in ../shared/data";
+  const ScratchFolder scratch;
+  setenv("PHIZ_CACHE", (scratch / "cache").c_str(), 1);
+  const std::string open = scratch / "open.phiz";
+  const Outcome built = phiz_command(
+      {"template", "build", "--ict", face_kit, "--bodyparts3d", body_parts, "--size", "preview", "-o", open});
+  ASSERT_EQ(built.code, 0) << built.err;
+  const Outcome checked = phiz_command({"template", "check", open});
+  EXPECT_EQ(checked.code, 0) << checked.out << checked.err;
+  const std::string again = scratch / "again.phiz";
+  const Outcome rebuilt = phiz_command({"--threads", "1", "template", "build", "--ict", face_kit, "--bodyparts3d",
+                                        body_parts, "--size", "preview", "--fresh", "-o", again});
+  ASSERT_EQ(rebuilt.code, 0) << rebuilt.err;
+  EXPECT_TRUE(read_text(open) == read_text(again)) << "the same bytes for any number of threads";
+  std::vector<std::string> heads{open};
+  for (const char* seed : {"1", "2", "3"}) {
+    heads.push_back(scratch / (std::string("person") + seed + ".phiz"));
+    const Outcome person = phiz_command({"template", "person", open, "--seed", seed, "-o", heads.back()});
+    ASSERT_EQ(person.code, 0) << person.err;
+  }
+  for (const std::string& head : heads) {
+    const std::string path = scratch / "take.phiz";
+    const Outcome outcome = phiz_command({"animate", head, recording, "-o", path});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const TakeReader take(path);
+    ASSERT_EQ(take.frames(), 180);
+    for (int f = 0; f < take.frames(); ++f) {
+      const SolveStatistics& statistics = take.frame(f).statistics;
+      EXPECT_LE(statistics.penetration, 1e-4) << head << " frame " << f;
+      EXPECT_LE(std::abs(statistics.volume_change), 0.02) << head << " frame " << f;
+      EXPECT_TRUE(statistics.converged) << head << " frame " << f;
+    }
+  }
+  const Outcome nobody = phiz_command({"template", "person", heads.back(), "-o", scratch / "nobody.phiz"});
+  EXPECT_EQ(nobody.code, 3) << nobody.err;
+  EXPECT_NE(nobody.err.find("no model of people"), std::string::npos) << nobody.err;
 }
 
 }  // namespace

@@ -5,8 +5,10 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <thread>
 
 #include "io/expect_error.h"
 #include "io/sample_nouns.h"
@@ -338,6 +340,14 @@ TEST(Container, a_large_part_reads_back_the_same) {
   const HeadTemplate loaded = load_head_template(folder.file("a.phiz"));
   EXPECT_EQ(loaded.parts[1].mesh.V, part.mesh.V);
   EXPECT_EQ(loaded.parts[1].shapes, part.shapes);
+}
+
+TEST(Container, the_same_head_makes_the_same_bytes_at_another_time) {
+  const TemporaryFolder folder;
+  save(folder.file("a.phiz"), sample_head());
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5 keeps times in seconds
+  save(folder.file("b.phiz"), sample_head());
+  EXPECT_TRUE(read_bytes(folder.file("a.phiz")) == read_bytes(folder.file("b.phiz")));
 }
 
 TEST(Container, a_take_that_cannot_be_saved_whole_leaves_nothing) {

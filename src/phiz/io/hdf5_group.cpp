@@ -281,8 +281,10 @@ void Hdf5Group::write_strings(const std::string& name, const std::vector<std::st
   const Hdf5Handle type = string_type(length);
   const hsize_t count = values.size();
   const Hdf5Handle space = own_space(H5Screate_simple(1, &count, nullptr));
+  const Hdf5Handle timeless = own_properties(H5Pcreate(H5P_DATASET_CREATE));
+  H5Pset_obj_track_times(timeless.get(), false);
   const Hdf5Handle array = own_array(
-      H5Dcreate2(handle_.get(), name.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+      H5Dcreate2(handle_.get(), name.c_str(), type.get(), space.get(), H5P_DEFAULT, timeless.get(), H5P_DEFAULT));
   if (!array.valid() ||
       (count > 0 && H5Dwrite(array.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, padded.data()) < 0)) {
     fail("cannot write " + where(name), "is the disk full?");

@@ -90,7 +90,12 @@ struct SparseCholesky::Factor {
           fail(fmt::format("the matrix to be factorised is not finite at row {}, column {}", row, it.col()));
     cholmod_sparse view = borrow(A);
     if (L == nullptr) {
-      L = cholmod_analyze(&view, workspace.get());
+      {
+        // METIS draws from one random generator for all threads: apart, its orderings are the same every time.
+        static std::mutex one_at_a_time;
+        const std::lock_guard lock(one_at_a_time);
+        L = cholmod_analyze(&view, workspace.get());
+      }
       if (L == nullptr) fail("the analysis of a sparse matrix failed", "there may be too little memory");
       outer.assign(A.outerIndexPtr(), A.outerIndexPtr() + A.rows() + 1);
       inner.assign(A.innerIndexPtr(), A.innerIndexPtr() + A.nonZeros());
