@@ -67,7 +67,7 @@ TEST(Usage, AMistakeIsNamedInOneLineWithWhatWouldBeRight) {
       {{"animat", "head.phiz", PHIZ_PERFORMANCE, "-o", "take.phiz"}, "no 'phiz animat'; did you mean 'animate'?"},
       {{"nonsense"}, "no 'phiz nonsense'; known: template, animate, export, inspect, render, bench; see phiz --help"},
       {{"template", "bulitin", "-o", "x.phiz"}, "no 'phiz template bulitin'; did you mean 'builtin'?"},
-      {{"template"}, "phiz template needs one of these words: build, builtin, check; see phiz template --help"},
+      {{"template"}, "phiz template needs one of these words: build, builtin, person, check; see phiz template --help"},
       {{"template", "builtin", "--sise=preview", "-o", "x.phiz"}, "no option '--sise'; did you mean '--size'?"},
       {{"animate", "head.phiz", PHIZ_PERFORMANCE, "--ouptut", "take.phiz"}, "did you mean '--output'?"},
       {{"animate", "head.phiz", PHIZ_PERFORMANCE, "-o", "take.phiz", "--thread", "2"}, "did you mean '--threads'?"},
