@@ -247,6 +247,8 @@ HeadTemplate reshape_head(const HeadTemplate& head, const MatrixX3d& skin) {
   const SpaceWarp warp(simulated, displacement);
 
   CompactMesh surface = remove_unused_vertices(head.volume.V, head.skin_triangles);
+  if (surface.kept.size() != head.skin_vertices.size() || surface.kept != head.skin_vertices)
+    reject(head.name, "its skin_vertices are not those of its skin_triangles in ascending order");
   TriangleMesh& new_skin = surface.mesh;
   new_skin.V = simulated + displacement;
   if (!untangle(new_skin, 40)) reject(head.name, "the new skin intersects itself and could not be mended");

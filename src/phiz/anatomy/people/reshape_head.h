@@ -18,7 +18,8 @@ namespace phiz {
 ///   the new joint;
 /// * the frame moves so that its origin is midway between the condyles. `identity` is left empty: a person has none.
 ///
-/// Throws phiz::Error(usage) on a skin of another size, phiz::Error(bad_input) when the new skin cannot be freed of
+/// Throws phiz::Error(usage) on a skin of another size, phiz::Error(bad_input) when skin_vertices are not those of
+/// skin_triangles in ascending order, when the new skin cannot be freed of
 /// self-intersections or is so different that tets stay inverted.
 HeadTemplate reshape_head(const HeadTemplate& head, const MatrixX3d& skin);
 

@@ -18,7 +18,7 @@ void meet_lids(const HeadTemplate& head, const Expression& before, const MatrixX
                Expression& e) {
   const auto upper = head.skin_regions.find(side + "UpperLidMargin");
   const auto lower = head.skin_regions.find(side + "LowerLidMargin");
-  if (upper == head.skin_regions.end() || lower == head.skin_regions.end()) return;
+  if (upper == head.skin_regions.end() || lower == head.skin_regions.end() || lower->second.size() == 0) return;
   const MatrixX3d closed = head.skin.V + before.displacement, now = skin + e.displacement;
   double lacking = 0, closing = 0;
   for (const int u : upper->second) {
