@@ -59,7 +59,11 @@ HeadTemplate open_head(const BuildArguments& arguments, bool& cached) {
   const std::filesystem::path kept = cached_head(arguments);
   std::error_code error;
   cached = !arguments.fresh && !kept.empty() && std::filesystem::exists(kept, error);
-  if (cached) return load_head_template(kept.string());
+  if (cached) try {
+      return load_head_template(kept.string());
+    } catch (const Error&) {
+      cached = false;  // damaged: it is made anew
+    }
   progress.begin("read the data");
   const BodyParts parts = read_body_parts(arguments.bodyparts3d);
   const FaceKit kit = read_face_kit(arguments.ict);
@@ -68,10 +72,12 @@ HeadTemplate open_head(const BuildArguments& arguments, bool& cached) {
   options.report = [&progress](const std::string& step) { progress.begin(step); };
   HeadTemplate head = build_open_head(kit, parts, options);
   progress.begin("keep in the cache");
-  if (!kept.empty()) {
-    std::filesystem::create_directories(kept.parent_path(), error);
-    if (!error) save(kept.string(), head);
-  }
+  if (!kept.empty()) try {
+      std::filesystem::create_directories(kept.parent_path());
+      save(kept.string(), head);
+    } catch (const std::exception&) {
+      // A cache that cannot be written to is done without.
+    }
   return head;
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -45,6 +47,26 @@ TEST(OpenHead, DamagedPartsAreNamed) {
       {"template", "build", "--ict", face_kit, "--bodyparts3d", scratch / "parts", "-o", scratch / "open.phiz"});
   EXPECT_EQ(outcome.code, 3) << outcome.err;
   EXPECT_NE(outcome.err.find("FMA52748_mandible.ply"), std::string::npos) << outcome.err;
+}
+
+TEST(OpenHead, AnInterruptedBuildLeavesNothingBehind) {
+  if (!std::filesystem::exists(face_kit) || !std::filesystem::exists(body_parts))
+    GTEST_SKIP() << "no open data in ../shared/data";
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const ScratchFolder scratch;
+    setenv("PHIZ_CACHE", (scratch / "cache").c_str(), 1);
+    std::filesystem::create_directories(scratch / "out");
+    const auto start = std::chrono::steady_clock::now();
+    const Outcome stopped = phiz_command({"template", "build", "--ict", face_kit, "--bodyparts3d", body_parts, "--size",
+                                          "preview", "-o", scratch / "out/a.phiz"},
+                                         [&](pid_t process) {
+                                           if (std::chrono::steady_clock::now() - start > std::chrono::seconds(5))
+                                             kill(process, signal);
+                                         });
+    EXPECT_NE(stopped.code, 0);
+    EXPECT_TRUE(std::filesystem::is_empty(scratch / "out"));
+    EXPECT_FALSE(std::filesystem::exists(scratch / "cache"));
+  }
 }
 
 TEST(OpenHead, IsBuiltFromOpenDataAndPassesItsGates) {

@@ -6,6 +6,7 @@
 #include "face/small_face.h"
 #include "phiz/core/error.h"
 #include "phiz/face/animate.h"
+#include "phiz/face/lid_closing.h"
 #include "phiz/face/volumetric_blendshapes.h"
 
 namespace phiz {
@@ -85,11 +86,55 @@ TEST(Animate, LipsAreClosedNoFartherThanTheJawIsOpen) {
   performance.expressions = {"mouthClose", "jawOpen", "a", "b"};
   performance.weights.row(0) << 0.9, 0.5, 0, 0;
   performance.weights.row(1) << 0.4, 0.5, 0, 0;
-  const ExpressionMatch match{{0, 1}, {}, {}};
+  const ExpressionMatch match{{0, 1}, {}, {}, {}};
   EXPECT_DOUBLE_EQ(shape_weights(match, performance, 0)[0], 0.65);
   EXPECT_DOUBLE_EQ(shape_weights(match, performance, 1)[0], 0.4);
   performance.expressions[1] = "c";
   EXPECT_DOUBLE_EQ(shape_weights(match, performance, 0)[0], 0.15);
+}
+
+TEST(Animate, LidsAreClosedNoFartherThanTheyAreOpen) {
+  Performance performance = testing::small_performance(4);
+  performance.expressions = {"eyeBlinkLeft", "eyeSquintLeft", "eyeWideLeft", "a"};
+  performance.weights.row(0) << 1, 0, 0, 0;
+  performance.weights.row(1) << 0.9, 1, 0, 0;
+  performance.weights.row(2) << 0.9, 1, 1, 0;
+  performance.weights.row(3) << 0.5, 1, 0, 0;
+  ExpressionMatch match{{0, 1, 2}, {}, {}, {}};
+  match.eyes.push_back({0, Vector3d(1, 0.4, -0.3)});
+  EXPECT_DOUBLE_EQ(shape_weights(match, performance, 0)[0], 1.0);
+  EXPECT_DOUBLE_EQ(shape_weights(match, performance, 1)[0], 0.7);  // 0.7 + 0.4: closed, and a tenth more
+  EXPECT_DOUBLE_EQ(shape_weights(match, performance, 2)[0], 0.9);
+  EXPECT_DOUBLE_EQ(shape_weights(match, performance, 3)[0], 0.5);
+}
+
+TEST(LidClosing, IsTheWayThatTheMarginsGoTowardsEachOther) {
+  HeadTemplate head;
+  head.skin.V.resize(10, 3);
+  for (int i = 0; i < 5; ++i) {
+    head.skin.V.row(i) << 0.01 * i, 0.010, 0;
+    head.skin.V.row(5 + i) << 0.01 * i, 0, 0;
+  }
+  head.skin_regions["leftUpperLidMargin"] = VectorXi::LinSpaced(5, 0, 4);
+  head.skin_regions["leftLowerLidMargin"] = VectorXi::LinSpaced(5, 5, 9);
+  const auto add = [&head](const std::string& name, double upper, double lower) {
+    Expression e{name, MatrixX3d::Zero(10, 3)};
+    e.displacement.topRows(5).col(1).setConstant(upper);
+    e.displacement.bottomRows(5).col(1).setConstant(lower);
+    head.expressions.push_back(e);
+  };
+  add("eyeSquintLeft", -0.001, 0.003);
+  EXPECT_EQ(lid_closing(head, "left").size(), 0) << "no blink";
+  add("eyeBlinkLeft", -0.008, 0);
+  add("eyeWideLeft", 0.002, 0);
+  add("jawOpen", -0.004, -0.004);
+  const VectorXd closing = lid_closing(head, "left");
+  ASSERT_EQ(closing.size(), 4);
+  EXPECT_NEAR(closing[0], 0.5, 1e-12);
+  EXPECT_NEAR(closing[1], 1, 1e-12);
+  EXPECT_NEAR(closing[2], -0.25, 1e-12);
+  EXPECT_NEAR(closing[3], 0, 1e-12);
+  EXPECT_EQ(lid_closing(head, "right").size(), 0) << "no margins";
 }
 
 TEST(Animate, EyeLookWeightsTurnTheEyesWhenNoAnglesWereRecorded) {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "geometry/shapes.h"
+#include "phiz/geometry/topology.h"
 
 namespace phiz {
 namespace {
@@ -34,6 +35,27 @@ TEST(Surface, NormalsOfASpherePointOutward) {
   const MatrixX3d N = vertex_normals(mesh.V, mesh.F);
   for (int v = 0; v < mesh.V.rows(); ++v)
     EXPECT_GT(N.row(v).dot((mesh.V.row(v).array() - 1).matrix().normalized()), 0.999);
+}
+
+TEST(Surface, AThickenedSheetIsClosedAndHasItsVolume) {
+  // The top of a box with a hole of one triangle.
+  TriangleMesh sheet;
+  constexpr int n = 5;
+  sheet.V.resize(n * n, 3);
+  for (int i = 0; i < n * n; ++i) sheet.V.row(i) << i % n, i / n, 0;
+  sheet.F.resize(2 * (n - 1) * (n - 1) - 1, 3);
+  int f = 0;
+  for (int y = 0; y + 1 < n; ++y)
+    for (int x = 0; x + 1 < n; ++x) {
+      const int a = y * n + x;
+      sheet.F.row(f++) << a, a + 1, a + n;
+      if (x != 1 || y != 1) sheet.F.row(f++) << a + 1, a + n + 1, a + n;
+    }
+  const TriangleMesh shell = thickened(sheet, 0.25);
+  EXPECT_TRUE(is_closed(shell.F));
+  EXPECT_TRUE(is_oriented(shell.F));
+  EXPECT_NEAR(signed_volume(shell.V, shell.F), 0.25 * 15.5, 1e-12);
+  EXPECT_EQ(shell.V.topRows(n * n), sheet.V);
 }
 
 TEST(Surface, DegenerateTrianglesAndLoneVerticesGiveZeroNormals) {

@@ -19,7 +19,8 @@ enum Tissue : int { flesh = 1, skull = 2, mandible = 3 };
 enum class Carrier : int { flesh = 0, skull = 1, mandible = 2, left_eye = 3, right_eye = 4 };
 
 /// A rigid mesh that is drawn and collided with: skull, mandible, upperTeeth, lowerTeeth, leftEye, rightEye, tongue...
-/// `shapes` holds vertex displacements per expression for the few parts that also deform (the tongue).
+/// `shapes` holds vertex displacements per expression for the few parts that also deform (the tongue). Connected pieces
+/// of a part that Carrier::flesh carries (leftLashes, rightLashes) ride the skin where they grow (skin_ride.h).
 struct Part {
   std::string name;
   TriangleMesh mesh;

@@ -9,6 +9,7 @@
 
 #include "phiz/core/error.h"
 #include "phiz/core/progress.h"
+#include "phiz/face/lid_closing.h"
 
 namespace phiz {
 
@@ -62,11 +63,24 @@ ExpressionMatch match_expressions(const FaceModel& model, const Performance& per
   }
   for (std::size_t e = 0; e < used.size(); ++e)
     if (!used[e]) match.unmatched.push_back(performance.expressions[e]);
+  for (const std::string side : {"left", "right"}) {
+    const VectorXd closing = lid_closing(model.head, side);
+    ExpressionMatch::Eye eye;
+    eye.closing = VectorXd::Zero(static_cast<Eigen::Index>(model.shapes.size()));
+    for (std::size_t m = 0; m < model.shapes.size() && closing.size() > 0; ++m)
+      for (std::size_t e = 0; e < model.head.expressions.size(); ++e) {
+        if (model.head.expressions[e].name != model.shapes[m].name) continue;
+        eye.closing[static_cast<Eigen::Index>(m)] = closing[static_cast<Eigen::Index>(e)];
+        if (model.shapes[m].name == (side == "left" ? "eyeBlinkLeft" : "eyeBlinkRight"))
+          eye.blink = static_cast<Eigen::Index>(m);
+      }
+    if (eye.blink >= 0) match.eyes.push_back(std::move(eye));
+  }
   return match;
 }
 
 VectorXd shape_weights(const ExpressionMatch& match, const Performance& performance, Eigen::Index frame) {
-  constexpr double pressing = 0.15;  // of lips that meet already
+  constexpr double pressing = 0.15, closed = 1.1;  // of lips that meet already; blinks that press lids together
   const int close = column_of(performance, "mouthClose");
   const double most = weight_of(performance, frame, "jawOpen") + pressing;
   VectorXd weights(static_cast<Eigen::Index>(match.column.size()));
@@ -74,6 +88,10 @@ VectorXd shape_weights(const ExpressionMatch& match, const Performance& performa
     const int column = match.column[static_cast<std::size_t>(m)];
     weights[m] = column >= 0 ? performance.weights(frame, column) : 0.0;
     if (column >= 0 && column == close) weights[m] = std::min(weights[m], most);
+  }
+  for (const auto& [blink, closing] : match.eyes) {
+    const double too_far = weights.dot(closing) - std::max(closed, weights[blink]);
+    if (too_far > 0) weights[blink] = std::max(0.0, weights[blink] - too_far);
   }
   return weights;
 }

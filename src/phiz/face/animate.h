@@ -26,11 +26,18 @@ struct ExpressionMatch {
   std::vector<int> column;             ///< per shape: column of Performance::weights, or -1
   std::vector<std::string> unmatched;  ///< expressions of the performance that the model does not have
   std::vector<std::string> undriven;   ///< shapes of the model that the performance does not name
+  /// An eye: the shape that is its blink, and lid_closing() of all shapes.
+  struct Eye {
+    Eigen::Index blink = -1;
+    VectorXd closing;
+  };
+  std::vector<Eye> eyes;
 };
 ExpressionMatch match_expressions(const FaceModel& model, const Performance& performance);
 
 /// Weights per shape in a frame: those of the performance, but that mouthClose, which closes what jawOpen opens, is
-/// held to the weight of jawOpen and 0.15 more; beyond, lips would have to pass through each other.
+/// held to the weight of jawOpen and 0.15 more, and a blink to what other expressions leave open of the eye; beyond, lips
+/// and lids would have to pass through each other.
 VectorXd shape_weights(const ExpressionMatch& match, const Performance& performance, Eigen::Index frame);
 
 /// Rotations of the eyes in a frame: those of the performance, or from its eyeLook weights if it records no rotation at

@@ -165,12 +165,18 @@ class ShapeSolver {
       double hidden = 0;
       for (SparseMatrixd::InnerIterator it(head_.skin_sampling, i); it; ++it)
         if (inner[static_cast<std::size_t>(it.col())]) hidden += it.value();
-      const double share = hidden > 0.5 ? options_.inner_hold : 1.0;
+      const double share = hidden > 0.5 ? options_.inner_hold : is_beside_eye(v) ? options_.lid_hold : 1.0;
       body.attachments.push_back(
           {v, 0.5 * share * options_.hold * stiffness * area[v] / 1e-3, head_.volume.V.row(v), Vector3d::Zero()});
       held_.push_back(v);
     }
     return body;
+  }
+
+  bool is_beside_eye(int v) const {
+    constexpr double reach = 0.024;  // metres from the centre of an eye: twice its radius
+    const Vector3d p = head_.volume.V.row(v);
+    return std::min((p - head_.left_eye_centre).norm(), (p - head_.right_eye_centre).norm()) < reach;
   }
 
   const HeadTemplate& head_;

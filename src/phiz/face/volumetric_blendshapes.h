@@ -17,6 +17,7 @@ struct BlendshapeOptions {
   double hold =
       60;  ///< pull of the sculpted skin: hold * stiffness per metre of skin distance and millimetre, see .cpp
   double inner_hold = 0.004;     ///< share of it on skin that is not seen: the mouth's bag
+  double lid_hold = 10;          ///< multiple of it beside the eyes: lids unfold more than flesh of their volume would
   int max_iterations = 150;      ///< of each of the two solves
   double step_tolerance = 2e-6;  ///< metres
   double least_strain = 2e-4;    ///< tets whose rotation and stretch stay below this are not kept

@@ -102,6 +102,28 @@ TriangleMesh joined(std::span<const TriangleMesh> meshes) {
   return all;
 }
 
+TriangleMesh thickened(const TriangleMesh& sheet, double thickness) {
+  const auto n = static_cast<int>(sheet.V.rows());
+  const Eigen::Index faces = sheet.F.rows();
+  const auto loops = boundary_loops(sheet.F);
+  Eigen::Index rim = 0;
+  for (const auto& loop : loops) rim += static_cast<Eigen::Index>(loop.size());
+  TriangleMesh shell;
+  shell.V.resize(2 * n, 3);
+  shell.V << sheet.V, sheet.V - thickness * vertex_normals(sheet.V, sheet.F);
+  shell.F.resize(2 * faces + 2 * rim, 3);
+  shell.F.topRows(faces) = sheet.F;
+  shell.F.middleRows(faces, faces) = sheet.F.rowwise().reverse().array() + n;
+  Eigen::Index f = 2 * faces;
+  for (const auto& loop : loops)
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const int a = loop[i], b = loop[(i + 1) % loop.size()];
+      shell.F.row(f++) << b, a, a + n;
+      shell.F.row(f++) << b, a + n, b + n;
+    }
+  return shell;
+}
+
 MatrixX3d rows_of(const std::vector<Vector3d>& points) {
   MatrixX3d rows(static_cast<Eigen::Index>(points.size()), 3);
   for (std::size_t i = 0; i < points.size(); ++i) rows.row(static_cast<Eigen::Index>(i)) = points[i];

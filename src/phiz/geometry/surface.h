@@ -40,6 +40,10 @@ std::vector<int> farthest_points(const MatrixX3d& points, Eigen::Index count);
 /// All meshes as one, vertices and triangles in order.
 TriangleMesh joined(std::span<const TriangleMesh> meshes);
 
+/// The closed surface of a sheet that has a thickness: the sheet, itself moved against its normals, and a band along
+/// every boundary. Vertices: those of the sheet, then the moved ones in the same order.
+TriangleMesh thickened(const TriangleMesh& sheet, double thickness);
+
 /// Pairs of triangles that intersect other than in a shared edge or vertex, sorted. Exact predicates (CGAL).
 std::vector<std::pair<int, int>> self_intersections(const TriangleMesh& mesh);
 

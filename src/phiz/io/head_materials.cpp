@@ -69,6 +69,7 @@ GltfMaterial head_material(const std::string& part_name) {
     skin.double_sided = true;  // the inside of the mouth is seen from within
     return skin;
   }
+  if (contains(name, "lash")) return material("hair", 0.035, 0.024, 0.018, 0.4);
   if (contains(name, "eye")) {
     GltfMaterial eye = material("eye", 1, 1, 1, 0.08);
     eye.base_colour_png = png_bytes(eye_texture());
@@ -77,7 +78,7 @@ GltfMaterial head_material(const std::string& part_name) {
   if (contains(name, "gum")) return material("gum", 0.50, 0.185, 0.17, 0.3);
   if (contains(name, "tongue")) return material("tongue", 0.47, 0.17, 0.16, 0.38);
   if (contains(name, "teeth") || contains(name, "tooth")) return material("enamel", 0.80, 0.75, 0.63, 0.2);
-  if (contains(name, "skull") || contains(name, "mandible") || contains(name, "bone")) {
+  if (contains(name, "skull") || contains(name, "mandible") || contains(name, "vertebra") || contains(name, "bone")) {
     return material("bone", 0.66, 0.59, 0.46, 0.6);
   }
   return material("plain", 0.6, 0.6, 0.6, 0.5);

@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "phiz/anatomy/skin_ride.h"
 #include "phiz/core/error.h"
 #include "phiz/core/parallel.h"
 #include "phiz/io/file_bytes.h"
@@ -20,11 +21,13 @@ namespace {
 
 /// Differences of the normals per shape that, with the shapes' weights, come nearest to the normals of all frames.
 /// The columns of the weights are orthogonal, so that each shape is fitted alone.
-std::vector<MatrixX3d> normal_shapes(const Take& take, const MatrixX3d& rest_normals, const Eigen::MatrixXf& weights) {
+std::vector<MatrixX3d> normal_shapes(const std::vector<const MatrixX3f*>& frames, const TriangleMesh& rest,
+                                     const Eigen::MatrixXf& weights) {
+  const MatrixX3d rest_normals = shading_normals(rest.V, rest.F);
   const auto shapes = static_cast<std::size_t>(weights.cols());
   std::vector<MatrixX3d> sums(shapes, MatrixX3d::Zero(rest_normals.rows(), 3));
-  for (std::size_t f = 0; f < take.frames.size(); ++f) {
-    const MatrixX3d change = shading_normals(take.frames[f].skin.cast<double>(), take.skin.F) - rest_normals;
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    const MatrixX3d change = shading_normals(frames[f]->cast<double>(), rest.F) - rest_normals;
     parallel_for(
         weights.cols(),
         [&](std::ptrdiff_t k) {
@@ -113,21 +116,38 @@ class TakeScene {
       if (frame.skin.rows() != take_.skin.V.rows()) fail("a frame of the take has another number of skin vertices");
       frames.push_back(&frame.skin);
     }
-    const CompressedFrames compressed = compress_frames(take_.skin.V, frames, options_.tolerance);
-    const GltfSurface surface(take_.skin);
-    GltfMesh mesh{.name = "skin", .primitives = {surface.primitive(take_.skin.V, material_for("skin"))}};
-    const auto normals = normal_shapes(take_, shading_normals(take_.skin.V, take_.skin.F), compressed.weights);
+    const CompressedFrames compressed = add_deforming("skin", take_.skin, frames, head);
+    report.vertices = static_cast<int>(scene_.meshes.back().primitives[0].positions.rows());
+    report.shapes = static_cast<int>(compressed.shapes.size());
+    report.max_error = compressed.max_error;
+    report.rms_error = compressed.rms_error;
+  }
+
+  /// A mesh that every frame gives other vertices, as morph targets.
+  CompressedFrames add_deforming(const std::string& name, const TriangleMesh& rest,
+                                 const std::vector<const MatrixX3f*>& frames, int parent) {
+    CompressedFrames compressed = compress_frames(rest.V, frames, options_.tolerance);
+    const GltfSurface surface(rest);
+    GltfMesh mesh{.name = name, .primitives = {surface.primitive(rest.V, material_for(name))}};
+    const auto normals = normal_shapes(frames, rest, compressed.weights);
     for (std::size_t k = 0; k < compressed.shapes.size(); ++k) {
       mesh.primitives[0].targets.push_back(
           {surface.spread(compressed.shapes[k].cast<double>()), surface.spread(normals[k])});
       mesh.target_names.push_back(fmt::format("shape{}", k));
     }
-    report.vertices = static_cast<int>(mesh.primitives[0].positions.rows());
-    report.shapes = static_cast<int>(compressed.shapes.size());
-    report.max_error = compressed.max_error;
-    report.rms_error = compressed.rms_error;
-    const int node = add_node("skin", head, add_mesh(std::move(mesh)));
-    if (report.shapes > 0) add_channel(node, GltfPath::weights, report.shapes).values = compressed.weights;
+    const int node = add_node(name, parent, add_mesh(std::move(mesh)));
+    if (!compressed.shapes.empty())
+      add_channel(node, GltfPath::weights, compressed.weights.cols()).values = compressed.weights;
+    return compressed;
+  }
+
+  void add_riding_part(const Part& part, int head) {
+    const SkinRide ride(take_.skin, part.mesh);
+    std::vector<MatrixX3f> positions;
+    for (const TakeFrame& frame : take_.frames) positions.emplace_back(ride(frame.skin.cast<double>()).cast<float>());
+    std::vector<const MatrixX3f*> frames;
+    for (const MatrixX3f& frame : positions) frames.push_back(&frame);
+    add_deforming(part.name, part.mesh, frames, head);
   }
 
   /// The node that carries a part, made when the first part needs it; its position at rest.
@@ -154,6 +174,10 @@ class TakeScene {
 
   void add_part(const Part& part, int head) {
     if (part.mesh.F.rows() == 0) return;
+    if (part.carrier == Carrier::flesh) {
+      add_riding_part(part, head);
+      return;
+    }
     const CarrierNode carrier = carrier_node(part.carrier, head);
     TriangleMesh local = part.mesh;
     local.V.rowwise() -= carrier.centre.transpose();

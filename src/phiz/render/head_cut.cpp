@@ -155,6 +155,7 @@ void add_cutaway(Scene& scene, const PosedHead& posed, const HeadViewOptions& op
     const Part& part = (*posed.parts)[i];
     const Surface s = part_surface(posed, i, true);
     scene.surfaces.push_back(cut_surface(s, plane));
+    if (part.carrier == Carrier::flesh) continue;
     const double lift = is_bone(part) ? bone_lift : has_name(part, {"teeth", "tooth"}) ? tooth_lift : soft_lift;
     add_section(scene, s, section_colour(part), plane, lift);
   }

@@ -16,8 +16,6 @@
 
 namespace phiz::detail {
 
-namespace {}  // namespace
-
 bool has_name(const Part& part, std::initializer_list<std::string_view> words) {
   std::string lower = part.name;
   std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -26,7 +24,7 @@ bool has_name(const Part& part, std::initializer_list<std::string_view> words) {
 }
 
 bool is_bone(const Part& part) {
-  return has_name(part, {"skull", "mandible", "bone"});
+  return has_name(part, {"skull", "mandible", "vertebra", "bone"});
 }
 bool is_eye(const Part& part) {
   return part.carrier == Carrier::left_eye || part.carrier == Carrier::right_eye || has_name(part, {"eye"});
@@ -36,6 +34,7 @@ namespace {
 
 Material part_material(const Part& part, bool coloured) {
   if (is_eye(part)) return eye_material();
+  if (part.carrier == Carrier::flesh) return hair_material();
   if (!coloured) {
     Material m = clay_material();
     if (has_name(part, {"teeth"})) m.albedo = m.albedo * 1.25;
@@ -205,6 +204,7 @@ Scene build_scene(const PosedHead& posed, const HeadViewOptions& options) {
   for (std::size_t i = 0; i < posed.parts->size(); ++i) {
     const bool bone = is_bone((*posed.parts)[i]);
     if (bone && (!inside || maps)) continue;
+    if ((*posed.parts)[i].carrier == Carrier::flesh && (inside || maps)) continue;
     Surface part = part_surface(posed, i, coloured);
     if (bone && style == HeadStyle::fibres) part.material.albedo *= 0.45;  // white fibres stand out
     scene.surfaces.push_back(std::move(part));

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "phiz/anatomy/skin_ride.h"
 #include "phiz/core/error.h"
 #include "phiz/render/head_surfaces.h"
 
@@ -86,6 +87,7 @@ Scene head_scene(const HeadTemplate& head, const HeadViewOptions& options) {
       if (deformed.rows() == 0) deformed = part.mesh.V;
       deformed += weight * shape->second;
     }
+    if (part.carrier == Carrier::flesh) deformed = SkinRide(head.skin, part.mesh)(posed.skin_now);
     posed.part_now.push_back(std::move(deformed));
   }
   return detail::build_scene(posed, options);

@@ -49,6 +49,14 @@ Material gum_material() {
   return m;
 }
 
+Material hair_material() {
+  Material m;
+  m.albedo = {0.035, 0.024, 0.018};
+  m.roughness = 0.4;
+  m.specular = 0.03;
+  return m;
+}
+
 Material bone_material() {
   Material m;
   m.albedo = {0.66, 0.59, 0.46};

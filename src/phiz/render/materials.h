@@ -12,6 +12,7 @@ Material eye_material();      ///< wet, sharp glint
 Material enamel_material();   ///< teeth
 Material gum_material();      ///< wet mucosa: gums, tongue
 Material bone_material();     ///< dry bone
+Material hair_material();     ///< lashes
 Material section_material();  ///< cuts: matt, and nearly as unlit as a legend; white, to be coloured
 Material muscle_material();   ///< moist; white, to be coloured by Surface::colour
 

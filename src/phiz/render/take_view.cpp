@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "phiz/anatomy/skin_ride.h"
 #include "phiz/core/error.h"
 #include "phiz/core/parallel.h"
 #include "phiz/geometry/spatial_query.h"
@@ -17,6 +18,7 @@ constexpr double average_eye_distance = 0.063;  // metres
 
 MatrixX3d deformed_part(const Take& take, const TakeFrame& frame, const Part& part) {
   MatrixX3d V;
+  if (part.carrier == Carrier::flesh) return SkinRide(take.skin, part.mesh)(frame.skin.cast<double>());
   if (part.shapes.empty()) return V;
   V = part.mesh.V;
   for (std::size_t i = 0; i < take.expressions.size(); ++i) {

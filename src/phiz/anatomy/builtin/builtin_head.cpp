@@ -19,6 +19,7 @@
 #include "phiz/anatomy/builtin/skin/surface.h"
 #include "phiz/anatomy/contact_regions.h"
 #include "phiz/anatomy/fibres.h"
+#include "phiz/anatomy/lashes.h"
 #include "phiz/core/error.h"
 #include "phiz/geometry/tetrahedralise.h"
 
@@ -78,6 +79,17 @@ void add_part(HeadTemplate& head, const char* name, Carrier carrier, TriangleMes
   head.parts.push_back({name, std::move(mesh), carrier, {}});
 }
 
+TriangleMesh make_lashes(const RefinedSkin& skin, const Proportions& p, const std::string& side) {
+  const Vector3d eye = side == "left" ? p.eye_centre : p.eye_centre.cwiseProduct(Vector3d(-1, 1, 1));
+  const auto sheet = [&](bool upper) {
+    MatrixX3d margin =
+        skin.mesh.V(skin.regions.at("loop:" + side + (upper ? "Upper" : "Lower") + "LidMargin"), Eigen::all);
+    if (std::abs(margin(0, 0)) > std::abs(margin(margin.rows() - 1, 0))) margin = margin.colwise().reverse().eval();
+    return std::vector<LashSheet>{lash_sheet(margin, eye, upper)};
+  };
+  return grow_lashes(sheet(true), sheet(false), 1);
+}
+
 void add_parts(HeadTemplate& head, const Proportions& p, const RefinedSkin& drawn_skin) {
   BoneOptions options;
   options.skull_edge = options.mandible_edge = drawn_bone_edge;
@@ -91,6 +103,8 @@ void add_parts(HeadTemplate& head, const Proportions& p, const RefinedSkin& draw
   head.parts.push_back(make_tongue(p));
   add_part(head, "leftEye", Carrier::left_eye, build_eye(p, true).mesh);
   add_part(head, "rightEye", Carrier::right_eye, build_eye(p, false).mesh);
+  add_part(head, "leftLashes", Carrier::flesh, make_lashes(drawn_skin, p, "left"));
+  add_part(head, "rightLashes", Carrier::flesh, make_lashes(drawn_skin, p, "right"));
 }
 
 }  // namespace

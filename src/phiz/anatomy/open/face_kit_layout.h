@@ -25,8 +25,9 @@ inline constexpr Range upper_teeth_faces{17006, 19250}, lower_teeth_faces{19250,
 inline constexpr Range left_eye_faces{21496, 23094}, right_eye_faces{23094, 24692};
 inline constexpr Range left_eye_vertices{21451, 23021}, right_eye_vertices{23021, 24591};
 inline constexpr Range left_sclera_vertices{21451, 22221}, right_sclera_vertices{23021, 23791};
+/// Lashes: per eye three cards on the upper lid, then three on the lower one.
 inline constexpr Range left_lash_faces{25304, 25844}, right_lash_faces{25844, 26384};
-inline constexpr Range left_lash_vertices{25351, 26035}, right_lash_vertices{26035, 26719};
+inline constexpr int lash_cards = 6, faces_per_lash_card = 90;
 
 /// The 68 points of the usual markup.
 inline constexpr std::array<int, 68> landmarks = {

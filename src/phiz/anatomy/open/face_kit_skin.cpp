@@ -7,6 +7,7 @@
 #include <set>
 
 #include "phiz/anatomy/open/face_kit_layout.h"
+#include "phiz/anatomy/open/lash_cards.h"
 #include "phiz/core/error.h"
 #include "phiz/geometry/coarsen.h"
 #include "phiz/geometry/geodesic.h"
@@ -86,7 +87,11 @@ class Regions {
     sockets_ = {used_by(kit.neutral, face_kit::left_socket_faces, n_),
                 used_by(kit.neutral, face_kit::right_socket_faces, n_)};
     skin.lip_line = both(outer_, mouth_);
-    for (int side = 0; side < 2; ++side) skin.lid_lines[side] = both(outer_, sockets_[side]);
+    for (int side = 0; side < 2; ++side) {
+      skin.socket_lines[side] = both(outer_, sockets_[side]);
+      skin.upper_lashes[side] = lash_roots(kit, side == 0, true);
+      skin.lower_lashes[side] = lash_roots(kit, side == 0, false);
+    }
   }
 
   void name() {
@@ -126,7 +131,17 @@ class Regions {
     const VectorXd distance = edge_distances(skin_.mesh.V, skin_.mesh.F, skin_.lip_line);
     const MatrixX3d& opened = kit_.expressions.at("jawOpen");
     const double half = 0.45 * opened.row(face_kit::landmarks[66]).norm();
-    const auto is_lower = [&](int v) { return v < opened.rows() && opened.row(v).norm() > half; };
+    // By what moves with the jaw beside the line of the lips, and farther inside, where the lining moves less, by
+    // height.
+    constexpr double beside = 0.004;
+    const MatrixX3d line = skin_.mesh.V(skin_.lip_line, Eigen::all);
+    const auto is_lower = [&](int v) {
+      if (v >= opened.rows()) return false;
+      if (!mouth_[v] || distance[v] < beside) return opened.row(v).norm() > half;
+      Eigen::Index nearest = 0;
+      (line.rowwise() - skin_.mesh.V.row(v)).rowwise().squaredNorm().minCoeff(&nearest);
+      return skin_.mesh.V(v, 1) < line(nearest, 1);
+    };
     // The border of the vermilion passes through the outer landmarks of the mouth.
     const auto vermilion = [&](int v, const Vector3d& p) {
       if (!outer_[v] || distance[v] > 0.02) return false;
@@ -153,23 +168,17 @@ class Regions {
   }
 
   void name_lids(int side, const std::string& name) {
-    const VectorXd distance = edge_distances(skin_.mesh.V, skin_.mesh.F, skin_.lid_lines[side]);
-    // A lid is above or below the line from canthus to canthus.
-    const Vector3d inner = landmark(side == 0 ? 42 : 39), outer = landmark(side == 0 ? 45 : 36);
-    const auto above = [&](const Vector3d& p) {
-      const double t = std::clamp((p.x() - inner.x()) / (outer.x() - inner.x()), 0.0, 1.0);
-      return p.y() > (1 - t) * inner.y() + t * outer.y();
-    };
-    constexpr double lid = 0.006, margin = 0.0016, back = 0.008;
+    const auto from = [&](const std::vector<int>& line) { return edge_distances(skin_.mesh.V, skin_.mesh.F, line); };
+    const VectorXd upper = from(skin_.upper_lashes[side]), lower = from(skin_.lower_lashes[side]);
+    constexpr double outside = 0.006, inside = 0.010, margin = 0.0018;  // metres from the roots of the lashes
     const auto& socket = sockets_[side];
-    set(name + "UpperLid", [&](int v, const Vector3d& p) {
-      return above(p) && ((outer_[v] && distance[v] < lid) || (socket[v] && distance[v] < back));
-    });
-    set(name + "LowerLid", [&](int v, const Vector3d& p) {
-      return !above(p) && ((outer_[v] && distance[v] < lid) || (socket[v] && distance[v] < back));
-    });
-    set(name + "UpperLidMargin", [&](int v, const Vector3d& p) { return above(p) && distance[v] < margin; });
-    set(name + "LowerLidMargin", [&](int v, const Vector3d& p) { return !above(p) && distance[v] < margin; });
+    const auto is_near = [&](int v, const VectorXd& d) {
+      return (outer_[v] && d[v] < outside) || (socket[v] && d[v] < inside);
+    };
+    set(name + "UpperLid", [&](int v, const Vector3d&) { return upper[v] < lower[v] && is_near(v, upper); });
+    set(name + "LowerLid", [&](int v, const Vector3d&) { return lower[v] <= upper[v] && is_near(v, lower); });
+    set(name + "UpperLidMargin", [&](int v, const Vector3d&) { return upper[v] < lower[v] && upper[v] < margin; });
+    set(name + "LowerLidMargin", [&](int v, const Vector3d&) { return lower[v] <= upper[v] && lower[v] < margin; });
     set(name + "Socket", [&](int v, const Vector3d&) { return socket[v] != 0; });
   }
 
@@ -213,8 +222,10 @@ TriangleMesh simulation_skin(const FaceKitSkin& skin, int vertices) {
   const MatrixX3d& V = skin.mesh.V;
   const auto points = [&V](const std::vector<int>& rows) { return MatrixX3d(V(rows, Eigen::all)); };
   const MatrixX3d lips = points(skin.lip_line);
-  MatrixX3d lids(skin.lid_lines[0].size() + skin.lid_lines[1].size(), 3);
-  lids << points(skin.lid_lines[0]), points(skin.lid_lines[1]);
+  std::vector<int> lashes;
+  for (const auto* lines : {&skin.upper_lashes, &skin.lower_lashes})
+    for (const std::vector<int>& line : *lines) lashes.insert(lashes.end(), line.begin(), line.end());
+  const MatrixX3d lids = points(lashes);
   MatrixX3d nose(3, 3);
   nose << V.row(face_kit::landmarks[30]), V.row(face_kit::landmarks[31]), V.row(face_kit::landmarks[35]);
   const auto near = [](const MatrixX3d& features, const Vector3d& p) {

@@ -17,7 +17,9 @@ struct FaceKitSkin {
   std::map<std::string, VectorXi> regions;    ///< rows of mesh.V; names as in the built-in skin
   std::vector<int> neck_loop;                 ///< where the cap begins
   std::vector<int> lip_line;                  ///< where outer skin and mouth meet
-  std::array<std::vector<int>, 2> lid_lines;  ///< where outer skin and eye socket meet, left and right
+  /// Left and right: where outer skin and eye socket meet, behind the lids; and the roots of the lashes, which mark the
+  /// margins of the lids.
+  std::array<std::vector<int>, 2> socket_lines, upper_lashes, lower_lashes;
 };
 
 /// Throws phiz::Error(bad_input) when the mesh is not laid out as the face kit's, phiz::Error(failure) when it cannot

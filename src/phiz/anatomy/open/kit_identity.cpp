@@ -20,7 +20,7 @@ IdentityModel kit_identity(const FaceKit& kit, const FaceKitSkin& skin) {
   std::vector<char> lining(static_cast<std::size_t>(n), 0);
   for (const char* name : {"mouthBag", "leftSocket", "rightSocket"})
     for (const int v : skin.regions.at(name)) lining[static_cast<std::size_t>(v)] = 1;
-  for (const auto* line : {&skin.lip_line, &skin.lid_lines[0], &skin.lid_lines[1]})
+  for (const auto* line : {&skin.lip_line, &skin.socket_lines[0], &skin.socket_lines[1]})
     for (const int v : *line) lining[static_cast<std::size_t>(v)] = 0;
   std::vector<int> inner, outer;
   for (int v = 0; v < own; ++v) (lining[static_cast<std::size_t>(v)] != 0 ? inner : outer).push_back(v);
@@ -31,7 +31,7 @@ IdentityModel kit_identity(const FaceKit& kit, const FaceKitSkin& skin) {
   std::vector<int> centres;
   for (const int i : farthest_points(skin.mesh.V(outer, Eigen::all), samples))
     centres.push_back(outer[static_cast<std::size_t>(i)]);
-  for (const auto* line : {&skin.lip_line, &skin.lid_lines[0], &skin.lid_lines[1]}) {
+  for (const auto* line : {&skin.lip_line, &skin.socket_lines[0], &skin.socket_lines[1]}) {
     const VectorXd distance = edge_distances(skin.mesh.V, skin.mesh.F, *line);
     for (const int v : outer)
       if (distance[v] < beside) centres.push_back(v);

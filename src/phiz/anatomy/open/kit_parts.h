@@ -9,13 +9,9 @@
 
 namespace phiz {
 
-/// upperTeeth, lowerTeeth, upperGums, lowerGums, tongue (with its shape tongueOut), leftEye, rightEye; and the rows of
-/// the kit's vertices that each part's vertices are. The gums are open sheets: what moves with the jaw in jawOpen goes
-/// to the lower ones, and there the tongue is what lies nearer to its back than to the teeth, along the surface.
-struct KitParts {
-  std::vector<Part> parts;
-  std::vector<VectorXi> rows;  ///< per part
-};
-KitParts kit_parts(const FaceKit& kit);
+/// upperTeeth, lowerTeeth, upperGums, lowerGums, tongue (with its shape tongueOut), leftEye, rightEye, leftLashes,
+/// rightLashes. The gums are the kit's sheet with a thickness. The tongue, which in the kit is a part of that sheet and
+/// has no underside, is the one of the built-in head between the kit's teeth. The lashes are hairs along the kit's cards.
+std::vector<Part> kit_parts(const FaceKit& kit);
 
 }  // namespace phiz

@@ -213,8 +213,7 @@ HeadTemplate build_open_head(const FaceKit& kit, const BodyParts& parts, const O
   head.parts.push_back({"skull", drawn_bone(parts, BodyPartKind::skull, map, 60000), Carrier::skull, {}});
   head.parts.push_back({"vertebrae", drawn_bone(parts, BodyPartKind::vertebra, map, 12000), Carrier::skull, {}});
   head.parts.push_back({"mandible", drawn_bone(parts, BodyPartKind::mandible, map, 12000), Carrier::mandible, {}});
-  KitParts kit_part = kit_parts(kit);
-  for (Part& part : kit_part.parts) head.parts.push_back(std::move(part));
+  for (Part& part : kit_parts(kit)) head.parts.push_back(std::move(part));
   for (std::size_t i = 0; i < face_kit::landmarks.size(); ++i)
     head.landmarks.push_back({std::to_string(i), face_kit::landmarks[i]});
   head.jaw = joint_of(condyle_centres(mandible.V));
@@ -223,7 +222,7 @@ HeadTemplate build_open_head(const FaceKit& kit, const BodyParts& parts, const O
   assign_contacts(head, regions);
 
   report("expressions");
-  head.expressions = kit_expressions(kit, head.skin.V.rows(), head.jaw);
+  head.expressions = kit_expressions(kit, skin, head.jaw);
   report("people");
   head.identity = kit_identity(kit, skin);
 

@@ -8,6 +8,7 @@
 #include "phiz/anatomy/bones/settle_bones.h"
 #include "phiz/anatomy/head_measures.h"
 #include "phiz/anatomy/people/reshaped_expressions.h"
+#include "phiz/anatomy/skin_ride.h"
 #include "phiz/core/error.h"
 #include "phiz/core/parallel.h"
 #include "phiz/geometry/improve_tets.h"
@@ -212,9 +213,13 @@ void carry_eye(const std::string& name, const MatrixX3d& skin_before, const Matr
   centre = moved;
 }
 
-void carry_parts(HeadTemplate& head, const SpaceWarp& warp, const Carry& carry) {
+void carry_parts(HeadTemplate& head, const TriangleMesh& skin_before, const SpaceWarp& warp, const Carry& carry) {
   for (Part& part : head.parts) {
     if (part.carrier == Carrier::left_eye || part.carrier == Carrier::right_eye) continue;
+    if (part.carrier == Carrier::flesh) {
+      part.mesh.V = SkinRide(skin_before, part.mesh)(head.skin.V);
+      continue;
+    }
     const MatrixX3d before = part.mesh.V;
     part.mesh.V = carry.holds(before) ? carry(before) : warp(before);
     for (auto& [name, displacement] : part.shapes) displacement = warp(MatrixX3d(before + displacement)) - warp(before);
@@ -260,7 +265,7 @@ HeadTemplate reshape_head(const HeadTemplate& head, const MatrixX3d& skin) {
   result.skin.V = skin;
   const Carry carry(head, result.volume.V, warp);
   carry_muscles(result, head, carry);
-  carry_parts(result, warp, carry);
+  carry_parts(result, head.skin, warp, carry);
   clear_drawn_bones(result);
   carry_eye("leftEye", head.skin.V, skin, result.left_eye_centre, result);
   carry_eye("rightEye", head.skin.V, skin, result.right_eye_centre, result);
