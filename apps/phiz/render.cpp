@@ -134,8 +134,13 @@ Image make_sheet(const RenderArguments& a, const Subject& subject, std::vector<V
     Progress progress("render", static_cast<std::ptrdiff_t>(names.size()));
     for (const std::string& name : names) {
       if (interrupted()) break;
-      subject.express(name == "neutral" ? std::map<std::string, double>{} : std::map<std::string, double>{{name, 1.0}});
-      cells.push_back({picture(subject, 0, view, extent, options), name});
+      std::map<std::string, double> weights;
+      if (name != "neutral") weights[name] = 1;
+      // It closes the lips of an open jaw, and means nothing without.
+      const bool on_open_jaw = name == "mouthClose" && std::find(names.begin(), names.end(), "jawOpen") != names.end();
+      if (on_open_jaw) weights["jawOpen"] = 1;
+      subject.express(weights);
+      cells.push_back({picture(subject, 0, view, extent, options), on_open_jaw ? "jawOpen + mouthClose" : name});
       progress.advance();
     }
   } else if (subject.frames > 1 && a.frame < 0) {

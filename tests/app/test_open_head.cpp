@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -10,6 +11,8 @@
 #include <vector>
 
 #include "command.h"
+#include "phiz/geometry/surface.h"
+#include "phiz/io/mesh_file.h"
 #include "phiz/io/take_file.h"
 
 namespace phiz::testing {
@@ -41,12 +44,31 @@ TEST(OpenHead, DamagedPartsAreNamed) {
       std::filesystem::create_symlink(std::filesystem::absolute(entry.path()),
                                       std::filesystem::path(scratch / "parts") / entry.path().filename());
   const std::string mandible = scratch / "parts/FMA52748_mandible.ply";
+  const PolygonMesh whole = read_mesh(mandible);
   std::filesystem::remove(mandible);
+  const auto refuse = [&](const std::string& reason) {
+    const Outcome outcome = phiz_command(
+        {"template", "build", "--ict", face_kit, "--bodyparts3d", scratch / "parts", "-o", scratch / "open.phiz"});
+    EXPECT_EQ(outcome.code, 3) << outcome.err;
+    EXPECT_NE(outcome.err.find("FMA52748_mandible.ply"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find(reason), std::string::npos) << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(scratch / "open.phiz"));
+  };
   write_text(mandible, "ply\nformat ascii 1.0\nelement vertex 3\n");
-  const Outcome outcome = phiz_command(
-      {"template", "build", "--ict", face_kit, "--bodyparts3d", scratch / "parts", "-o", scratch / "open.phiz"});
-  EXPECT_EQ(outcome.code, 3) << outcome.err;
-  EXPECT_NE(outcome.err.find("FMA52748_mandible.ply"), std::string::npos) << outcome.err;
+  refuse("");
+  const auto write = [&](const PolygonMesh& mesh) { write_mesh(mandible, triangulate(mesh)); };
+  PolygonMesh damaged = whole;
+  damaged.faces.resize(whole.faces.size() / 2);
+  write(damaged);
+  refuse("incomplete");
+  damaged = whole;
+  for (std::vector<int>& face : damaged.faces) std::reverse(face.begin(), face.end());
+  write(damaged);
+  refuse("inside out");
+  damaged = whole;
+  damaged.V.col(0).array() += 1000;
+  write(damaged);
+  refuse("far away");
 }
 
 TEST(OpenHead, AnInterruptedBuildLeavesNothingBehind) {

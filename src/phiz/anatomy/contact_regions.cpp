@@ -82,10 +82,10 @@ ContactRegion& contact_of(HeadTemplate& head, const std::string& name) {
                        [&name](const ContactRegion& contact) { return contact.name == name; });
 }
 
-/// Takes the vertices at the corners of the eye out of the margins of its lids: there the lids are one skin that folds,
-/// and being behind the other's plane is no penetration.
+/// Takes the vertices of the outer thirds out of the margins of an eye's lids: towards the corners the lids are one
+/// skin that folds, and being behind the other's plane is no penetration.
 void release_canthi(HeadTemplate& head, const std::string& side) {
-  constexpr double corner = 0.003, end = 0.25;  // metres from the other lid; share of the length
+  constexpr double corner = 0.003, end = 0.35;  // metres from the other lid; share of the length
   ContactRegion &upper = contact_of(head, side + "UpperLidMargin"), &lower = contact_of(head, side + "LowerLidMargin");
   if (upper.vertices.size() == 0 || lower.vertices.size() == 0) return;
   const VectorXi above = upper.vertices, below = lower.vertices;
@@ -118,13 +118,17 @@ void assign_contacts(HeadTemplate& head, const SkinRegions& regions) {
   share_seam(upper, lower, head.skin_triangles);
   add("upperLip", upper);
   add("lowerLip", lower);
-  // Cheeks: what is left of the bag's wall beside the teeth.
+  // Cheeks: what is left of the bag's wall beside the teeth; behind the last ones gums end in thin flanges.
+  const Part* teeth = find_part(head, "upperTeeth");
+  if (teeth == nullptr) reject(head.name, "there is no part upperTeeth");
+  constexpr double before_end = 0.001;  // metres
+  const double last_molar = teeth->mesh.V.col(2).minCoeff() + before_end;
   const Flags lips = flags(regions, {"upperLip", "lowerLip"}, n);
   const Flags ends = flags(regions, {"oralRoof", "oralFloor"}, n);
   Flags left = flags(regions, {"mouthBag"}, n), right = left;
   for (Eigen::Index v = 0; v < n; ++v) {
     const double x = head.volume.V(v, 0);
-    const bool wall = left[v] && !lips[v] && !ends[v] && std::abs(x) > 0.018;
+    const bool wall = left[v] && !lips[v] && !ends[v] && std::abs(x) > 0.018 && head.volume.V(v, 2) > last_molar;
     left[v] = wall && x > 0;
     right[v] = wall && x < 0;
   }

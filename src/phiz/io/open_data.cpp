@@ -5,6 +5,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <exception>
 #include <filesystem>
@@ -16,6 +17,7 @@
 #include "phiz/core/error.h"
 #include "phiz/core/parallel.h"
 #include "phiz/geometry/surface.h"
+#include "phiz/geometry/topology.h"
 #include "phiz/io/file_bytes.h"
 #include "phiz/io/file_set.h"
 #include "phiz/io/mesh_file.h"
@@ -107,6 +109,25 @@ std::map<int, std::string> find_body_parts(const std::string& folder) {
   return files;
 }
 
+/// All parts are of one head: none is far from where most are.
+void require_one_place(const BodyParts& parts, const std::map<int, std::string>& files) {
+  constexpr double reach = 0.35;  // metres from the middle of the parts' centres
+  const auto centre = [](const TriangleMesh& mesh) { return Vector3d(mesh.V.colwise().mean()); };
+  std::array<std::vector<double>, 3> centres;
+  for (const auto& [fma, mesh] : parts.meshes)
+    for (int k = 0; k < 3; ++k) centres[static_cast<std::size_t>(k)].push_back(centre(mesh)[k]);
+  Vector3d middle;
+  for (int k = 0; k < 3; ++k) {
+    std::vector<double>& values = centres[static_cast<std::size_t>(k)];
+    const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), half, values.end());
+    middle[k] = *half;
+  }
+  for (const auto& [fma, mesh] : parts.meshes)
+    if ((centre(mesh) - middle).norm() > reach)
+      reject(files.at(fma), "lies far away from the other parts of the head", "use the files as they are given out");
+}
+
 std::uint64_t fingerprint(const std::vector<std::string>& paths) {
   std::uint64_t sum = 1469598103934665603ULL;
   for (const std::string& path : paths) {
@@ -145,7 +166,13 @@ FaceKit read_face_kit(const std::string& folder) {
       reject(text.where,
              fmt::format("has {} vertices, generic_neutral_mesh.obj has {}", V.rows(), kit.neutral.V.rows()),
              "all files must be of one release of the model");
-    return MatrixX3d((V - kit.neutral.V) * centimetre);
+    MatrixX3d moved = (V - kit.neutral.V) * centimetre;
+    constexpr double farthest = 0.2;  // metres
+    Eigen::Index vertex = 0;
+    if (moved.rowwise().norm().maxCoeff(&vertex) > farthest)
+      reject(text.where, fmt::format("moves vertex {} by {:.3g} m", vertex, moved.row(vertex).norm()),
+             "fetch it again");
+    return moved;
   };
   const std::vector<std::string>& expressions = face_kit_expressions();
   std::vector<std::string> all = face_kit_identities();
@@ -191,10 +218,20 @@ BodyParts read_body_parts(const std::string& folder) {
       if (!((high - low).maxCoeff() > 2 && high.cwiseAbs().maxCoeff() > 200 && high.cwiseAbs().maxCoeff() < 5000))
         reject(file->second, "does not lie in the frame of BodyParts3D in millimetres, feet at z = 0",
                "use the files as they are given out");
+      constexpr double most_open = 0.005;  // of three edges per triangle
+      std::size_t open_edges = 0;
+      for (const auto& loop : boundary_loops(mesh.F)) open_edges += loop.size();
+      if (static_cast<double>(open_edges) > most_open * 3 * static_cast<double>(mesh.F.rows()))
+        reject(file->second, fmt::format("is incomplete: {} edges have a triangle on one side only", open_edges),
+               "fetch it again");
+      constexpr double least_volume = 10;  // cubic millimetres; the smallest part has 94
+      if (!(signed_volume(mesh.V, mesh.F) > least_volume))
+        reject(file->second, "encloses no volume: it is flat or inside out", "fetch it again");
       mesh.V = (MatrixX3d(mesh.V.rows(), 3) << mesh.V.col(0), mesh.V.col(2), -mesh.V.col(1)).finished() * millimetre;
       parts.meshes[part.fma] = std::move(mesh);
     }
   }
+  require_one_place(parts, files);
   return parts;
 }
 

@@ -105,6 +105,11 @@ FaceGuide measure_face(const FaceKit& kit) {
            "has " + std::to_string(V.rows()) + " vertices and " + std::to_string(kit.neutral.faces.size()) +
                " faces, expected 26719 and 26384",
            "use ICT Face Model Light as it is given out");
+  constexpr face_kit::Range lower = face_kit::lower_teeth_vertices;
+  constexpr double least_opening = 0.005;  // metres
+  if (!(kit.expressions.at("jawOpen").middleRows(lower.first, lower.end - lower.first).rowwise().norm().minCoeff() >
+        least_opening))
+    reject("jawOpen.obj", "does not lower the lower teeth", "use ICT Face Model Light as it is given out");
   FaceGuide guide;
   guide.outer_skin =
       remove_unused_vertices(V, face_kit_triangles(kit.neutral, face_kit::outer_faces.first, face_kit::outer_faces.end))
