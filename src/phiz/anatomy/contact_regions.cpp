@@ -161,15 +161,18 @@ void assign_contacts(HeadTemplate& head, const SkinRegions& regions) {
     head.contact_pairs.push_back({side + "UpperLidMargin", side + "LowerLidMargin"});
     head.contact_pairs.push_back({side + "LowerLidMargin", side + "UpperLidMargin"});
   }
-  // A coarse skin has no triangles in the narrowest regions.
-  const auto is_missing = [&head](const std::string& name) {
-    return std::any_of(head.contact_regions.begin(), head.contact_regions.end(), [&](const ContactRegion& contact) {
-      return contact.name == name && contact.triangles.rows() == 0;
-    });
+  // A coarse skin has too few triangles in the narrowest regions.
+  constexpr Eigen::Index fewest = 12;
+  const auto is_too_coarse = [](const ContactRegion& contact) {
+    return contact.triangles.rows() < (contact.extended ? fewest : 1);
+  };
+  const auto is_missing = [&](const std::string& name) {
+    return std::any_of(head.contact_regions.begin(), head.contact_regions.end(),
+                       [&](const ContactRegion& contact) { return contact.name == name && is_too_coarse(contact); });
   };
   std::erase_if(head.contact_pairs,
                 [&](const ContactPair& pair) { return is_missing(pair.vertices) || is_missing(pair.obstacle); });
-  std::erase_if(head.contact_regions, [](const ContactRegion& contact) { return contact.triangles.rows() == 0; });
+  std::erase_if(head.contact_regions, is_too_coarse);
 }
 
 }  // namespace phiz

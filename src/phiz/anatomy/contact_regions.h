@@ -18,7 +18,7 @@ using SkinRegions = std::map<std::string, VectorXi>;
 /// oralFloor, and for either side leftUpperLid, leftLowerLid, leftUpperLidMargin, leftLowerLidMargin. Uses
 /// head.skin_triangles and the parts; gums that are no closed surface are no obstacles. Left out are: vertices inside
 /// of gums at rest; the outer thirds of the lids, for lid against lid; what lies behind the last teeth; regions without
-/// a triangle, as on coarse skins.
+/// a triangle, and margins of lids with fewer than a dozen, as on coarse skins.
 void assign_contacts(HeadTemplate& head, const SkinRegions& regions);
 
 }  // namespace phiz

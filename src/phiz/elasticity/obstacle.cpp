@@ -173,10 +173,14 @@ std::optional<SignedContact> Obstacle::closest(const Vector3d& point, double rea
     normal = vertex_normal(F_(f, k));
   }
   const Vector3d r = p - near->position;
-  if (contact.on_rim && extended_) {
+  constexpr double most_beside = 1.5e-3;  // metres
+  const double over_plane = r.dot(face_normal(f));
+  const double beside = std::sqrt(std::max(0.0, near->squared_distance - over_plane * over_plane));
+  if (contact.on_rim && extended_ && beside < most_beside) {
     contact.on_rim = false;
+    contact.beside_rim = beside;
     contact.normal = face_normal(f);
-    contact.gap = r.dot(contact.normal);
+    contact.gap = over_plane;
     return contact;
   }
   const double distance = std::sqrt(near->squared_distance);

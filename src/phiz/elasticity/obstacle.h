@@ -17,8 +17,10 @@ struct SignedContact {
   Vector3d normal = Vector3d::UnitZ();
   int triangle = -1;
   Vector3d barycentric = Vector3d::Zero();
-  bool on_rim = false;  ///< the closest point lies on the boundary of an open patch: there is no inside or outside; an
-                        ///< extended patch goes on in the plane of the face
+  bool on_rim = false;  ///< the closest point lies on the boundary of an open patch: there is no inside or outside
+  /// Metres from the rim of an extended patch, which goes on a little in the plane of the face, 0 elsewhere. The gap is
+  /// to that plane and says nothing of the planes of other faces.
+  double beside_rim = 0;
 };
 
 class Obstacle {

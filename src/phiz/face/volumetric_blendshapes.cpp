@@ -28,7 +28,7 @@ struct StretchBounds {
   double least, most;
 };
 constexpr StretchBounds usual{0.4, 4};
-constexpr StretchBounds drawn_out{0.15, 8};  ///< lips that stay closed over an open jaw grow to fivefold
+constexpr StretchBounds drawn_out{0.15, 8};  ///< lids that unfold; lips closed over an open jaw
 
 /// The soft tet (index into `soft`) below each triangle of the simulation skin, or -1.
 VectorXi tets_below(const HeadTemplate& head, const VectorXi& soft) {
@@ -254,7 +254,8 @@ FaceModel build_volumetric_blendshapes(HeadTemplate head, const BlendshapeOption
         model.shapes.push_back(
             difference(solver.solve(both, drawn_out, statistics), solver.solve(*open, usual, again)));
       } else {
-        model.shapes.push_back(solver.solve(expression, usual, statistics));
+        const bool unfolds = expression.name.starts_with("eyeBlink");
+        model.shapes.push_back(solver.solve(expression, unfolds ? drawn_out : usual, statistics));
       }
       if (options.report) options.report(expression.name, statistics);
     }

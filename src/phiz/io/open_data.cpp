@@ -218,10 +218,10 @@ BodyParts read_body_parts(const std::string& folder) {
       if (!((high - low).maxCoeff() > 2 && high.cwiseAbs().maxCoeff() > 200 && high.cwiseAbs().maxCoeff() < 5000))
         reject(file->second, "does not lie in the frame of BodyParts3D in millimetres, feet at z = 0",
                "use the files as they are given out");
-      constexpr double most_open = 0.005;  // of three edges per triangle
+      constexpr double most_open = 0.001, some_open = 12;  // of three edges per triangle; edges
       std::size_t open_edges = 0;
       for (const auto& loop : boundary_loops(mesh.F)) open_edges += loop.size();
-      if (static_cast<double>(open_edges) > most_open * 3 * static_cast<double>(mesh.F.rows()))
+      if (static_cast<double>(open_edges) > std::max(some_open, most_open * 3 * static_cast<double>(mesh.F.rows())))
         reject(file->second, fmt::format("is incomplete: {} edges have a triangle on one side only", open_edges),
                "fetch it again");
       constexpr double least_volume = 10;  // cubic millimetres; the smallest part has 94
