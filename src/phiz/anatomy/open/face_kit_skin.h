@@ -14,9 +14,9 @@ namespace phiz {
 /// The drawn skin: vertices 0 to 14061 are the face kit's, in its order; then come those of the cap of the neck.
 struct FaceKitSkin {
   TriangleMesh mesh;  ///< closed, manifold, outward, free of self-intersections; texture coordinates of the face kit
-  std::map<std::string, VectorXi> regions;    ///< rows of mesh.V; names as in the built-in skin
-  std::vector<int> neck_loop;                 ///< where the cap begins
-  std::vector<int> lip_line;                  ///< where outer skin and mouth meet
+  std::map<std::string, VectorXi> regions;  ///< rows of mesh.V; names as in the built-in skin
+  std::vector<int> neck_loop;               ///< where the cap begins
+  std::vector<int> lip_line;                ///< where outer skin and mouth meet
   /// Left and right: where outer skin and eye socket meet, behind the lids; and the roots of the lashes, which mark the
   /// margins of the lids.
   std::array<std::vector<int>, 2> socket_lines, upper_lashes, lower_lashes;
