@@ -8,8 +8,8 @@
 
 namespace phiz {
 
-/// How the connected pieces of a part ride the skin: each as a rigid body, by the patch of skin about its root, which is
-/// where it comes nearest to the skin at rest.
+/// How the connected pieces of a part ride the skin: each as a rigid body, by the patch of skin about its root, which
+/// is where it comes nearest to the skin at rest.
 class SkinRide {
  public:
   /// Throws phiz::Error(bad_input) when the skin has no triangles.

@@ -29,7 +29,6 @@ struct Watch {
 
 constexpr double search_reach = 2.5e-3;  ///< beyond the margin; a longer search is seldom of use for the next call
 constexpr double hollow_reach = 3e-4;    ///< how near a second face must be to hold a vertex in a hollow, metres
-constexpr double at_rim = 3e-4;          ///< how far beside the rim of an extended patch there is still a penetration
 constexpr double same_side = 0.5;        ///< cosine above which a penetrating vertex faces as its obstacle does
 /// A vertex at an angle t behind a face has a way of cot(t/2) times its depth over the seam: with less than this it has
 /// not passed through the closed seam, but the seam has opened by more than three quarters of a turn.
@@ -232,9 +231,7 @@ double ContactScene::penetration(const PositionView& positions) const {
         const Vector3d p = positions[watch.vertex];
         if (s.clearance(watch, p) > 0) return;
         const auto contact = s.obstacle_of(watch).closest(p, s.options.depth_limit, watch.hint);
-        // Farther beside a rim the planes of lids that stand open cross: they guide lids that close, no more.
-        if (s.is_contact(watch, p, contact) && contact->beside_rim < at_rim)
-          depth[static_cast<std::size_t>(i)] = std::max(0.0, -contact->gap);
+        if (s.is_contact(watch, p, contact)) depth[static_cast<std::size_t>(i)] = std::max(0.0, -contact->gap);
       },
       64);
   return depth.empty() ? 0.0 : *std::max_element(depth.begin(), depth.end());

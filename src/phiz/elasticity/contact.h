@@ -51,7 +51,8 @@ class ContactScene {
   ContactScene& operator=(ContactScene&&) noexcept;
 
   /// An obstacle that is a patch of the body: outward triangles over its vertices. Up to 1.5 mm beside the rim of
-  /// an `extended` one the plane of the nearest face holds; beside that of any other there is no contact. Returns its number.
+  /// an `extended` one the plane of the nearest face holds; beside that of any other there is no contact. Returns its
+  /// number.
   int add_patch(const MatrixX3d& rest, const MatrixX3i& triangles, bool extended = false);
   /// A rigid obstacle with outward triangles. Returns its number.
   int add_rigid(const TriangleMesh& mesh);
@@ -73,8 +74,7 @@ class ContactScene {
   void forget();
 
   /// Deepest penetration over all pairs, metres, >= 0, of every vertex that can have come near: a
-  /// second look at the state, apart from the rows that the solver used. Beside the rim of an extended patch only the
-  /// nearest 0.3 mm count.
+  /// second look at the state, apart from the rows that the solver used.
   double penetration(const PositionView& positions) const;
   double penetration(const MatrixX3d& x) const;
 

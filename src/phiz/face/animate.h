@@ -36,8 +36,8 @@ struct ExpressionMatch {
 ExpressionMatch match_expressions(const FaceModel& model, const Performance& performance);
 
 /// Weights per shape in a frame: those of the performance, but that mouthClose, which closes what jawOpen opens, is
-/// held to the weight of jawOpen and 0.15 more, and a blink to what other expressions leave open of the eye; beyond, lips
-/// and lids would have to pass through each other.
+/// held to the weight of jawOpen and 0.15 more, and a blink to what other expressions leave open of the eye; beyond,
+/// lips and lids would have to pass through each other.
 VectorXd shape_weights(const ExpressionMatch& match, const Performance& performance, Eigen::Index frame);
 
 /// Rotations of the eyes in a frame: those of the performance, or from its eyeLook weights if it records no rotation at

@@ -11,7 +11,8 @@ namespace phiz {
 
 /// upperTeeth, lowerTeeth, upperGums, lowerGums, tongue (with its shape tongueOut), leftEye, rightEye, leftLashes,
 /// rightLashes. The gums are the kit's sheet with a thickness. The tongue, which in the kit is a part of that sheet and
-/// has no underside, is the one of the built-in head between the kit's teeth. The lashes are hairs along the kit's cards.
+/// has no underside, is the one of the built-in head between the kit's teeth. The lashes are hairs along the kit's
+/// cards.
 std::vector<Part> kit_parts(const FaceKit& kit);
 
 }  // namespace phiz
