@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "command.h"
+#include "flesh_depth.h"
 #include "phiz/anatomy/expression_names.h"
 #include "phiz/core/random.h"
-#include "phiz/geometry/operators.h"
 #include "phiz/geometry/spatial_query.h"
 #include "phiz/io/container.h"
 #include "phiz/io/take_file.h"
@@ -61,29 +61,6 @@ Performance random_mouths(int poses, std::uint64_t seed) {
   return still_headed(weights);
 }
 
-/// How deep the vertices lie within flesh that is not their own, at the most: inside of a tet that they are no corner
-/// of, by the distance from the nearest skin around. Metres.
-double depth_in_flesh(const MatrixX3d& V, const MatrixX4i& flesh, const MatrixX3i& skin, const VectorXi& vertices) {
-  const TetQuery tets(V, flesh);
-  const SurfaceQuery surface(V, skin);
-  double most = 0;
-  for (const int v : vertices) {
-    const Vector3d p = V.row(v);
-    const auto place = tets.locate(p);
-    if (!place || (flesh.row(place->tet).array() == v).any()) continue;
-    constexpr double reach = 0.004;
-    double nearest = reach;
-    for (const int f : surface.triangles_in_box(p.array() - reach, p.array() + reach)) {
-      if ((skin.row(f).array() == v).any()) continue;
-      const Vector3d a = V.row(skin(f, 0)), b = V.row(skin(f, 1)), c = V.row(skin(f, 2));
-      const Vector3d w = closest_barycentric(p, a, b, c);
-      nearest = std::min(nearest, (p - w[0] * a - w[1] * b - w[2] * c).norm());
-    }
-    most = std::max(most, nearest);
-  }
-  return most;
-}
-
 /// How deep the vertices lie within the teeth, at the most, metres.
 double depth_in_teeth(const HeadTemplate& head, const MatrixX3d& V, const JawPose& pose, const VectorXi& vertices) {
   static const SurfaceQuery upper(find_part(head, "upperTeeth")->mesh), lower(find_part(head, "lowerTeeth")->mesh);
@@ -109,9 +86,9 @@ TEST(RandomPoses, ConvergeAndNoLipEntersFleshOrTeeth) {
     EXPECT_LE(frame.at("penetration_mm").get<double>(), 0.1) << frame;
     EXPECT_LE(std::abs(frame.at("volume_change").get<double>()), 0.03) << frame;  // some mixtures ask for 2 %
   }
-  // The same by geometry alone, which shares nothing with the contact code.
+  // The same by geometry alone.
   const HeadTemplate head = load_head_template(PHIZ_PREVIEW_HEAD);
-  const MatrixX4i flesh = head.volume.T(soft_tets(head), Eigen::all);
+  const FleshDepth flesh(head);
   std::vector<int> mouth;
   for (const ContactRegion& region : head.contact_regions)
     if (region.name.find("Lip") != std::string::npos || region.name.find("Cheek") != std::string::npos)
@@ -124,8 +101,7 @@ TEST(RandomPoses, ConvergeAndNoLipEntersFleshOrTeeth) {
     for (int f = 0; f < take.frames(); ++f) {
       const TakeFrame frame = take.frame(f);
       const MatrixX3d V = frame.volume.cast<double>();
-      most = std::max({most, depth_in_flesh(V, flesh, head.skin_triangles, vertices),
-                       depth_in_teeth(head, V, frame.jaw, vertices)});
+      most = std::max({most, flesh.deepest(V), depth_in_teeth(head, V, frame.jaw, vertices)});
     }
     return most;
   };

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "command.h"
+#include "flesh_depth.h"
 #include "phiz/io/container.h"
 #include "phiz/io/take_file.h"
 
@@ -67,11 +68,13 @@ TEST(Recording, StandardHeadPlaysItWithoutPenetrationInversionOrLossOfVolume) {
   const HeadTemplate head = load_head_template(PHIZ_STANDARD_HEAD);
   const std::vector<Eigen::Index> lips = lip_triangles(head);
   EXPECT_EQ(inverted(head.skin.V, head.skin.F, lips), 0);
+  const FleshDepth flesh(head);
   const TakeReader take(path);
   ASSERT_EQ(take.frames(), 180);
   for (int f = 0; f < take.frames(); ++f) {
     const TakeFrame frame = take.frame(f);
     EXPECT_LE(frame.statistics.penetration, 1e-4) << "frame " << f;
+    EXPECT_LE(flesh.deepest(frame.volume.cast<double>()), 1e-4) << "frame " << f;
     EXPECT_LE(std::abs(frame.statistics.volume_change), 0.02) << "frame " << f;
     EXPECT_EQ(inverted(frame.skin, head.skin.F, lips), 0) << "frame " << f;
     EXPECT_TRUE(frame.statistics.converged) << "frame " << f;

@@ -71,21 +71,5 @@ TEST(Obstacle, AFaceIsNoWallForAPointBehindItsPlane) {
   }
 }
 
-TEST(Obstacle, BesideTheRimOnlyAnExtendedPatchHolds) {
-  // A strip as wide as a lid's margin, facing up.
-  const TriangleMesh strip =
-      sheet({-0.01, 0, 0.01}, {{{0, 0}, {0.002, 0}}, {{0, 0}, {0.002, 0}}, {{0, 0}, {0.002, 0}}});
-  const Obstacle plain = Obstacle::patch(strip.V, strip.F), extended = Obstacle::patch(strip.V, strip.F, true);
-  const Vector3d beside(0.003, 0.004, -0.0005), above(0.001, 0.004, -0.0005);
-  EXPECT_TRUE(plain.closest(beside, 0.01)->on_rim);
-  const auto contact = extended.closest(beside, 0.01);
-  ASSERT_TRUE(contact.has_value());
-  EXPECT_FALSE(contact->on_rim);
-  EXPECT_NEAR(contact->gap, -0.0005, 1e-12);
-  EXPECT_NEAR(contact->normal.z(), 1, 1e-12);
-  EXPECT_NEAR((contact->normal.dot(beside - extended.point(*contact))), contact->gap, 1e-12);
-  EXPECT_NEAR(plain.closest(above, 0.01)->gap, extended.closest(above, 0.01)->gap, 1e-12);
-}
-
 }  // namespace
 }  // namespace phiz

@@ -55,7 +55,7 @@ inline HeadTemplate sample_head() {
   head.identity.skin = Eigen::MatrixXf::Constant(12, 2, 0.001F);
   head.identity.skin(5, 1) = -0.002F;
   head.identity.deviation = VectorXd::LinSpaced(2, 0.002, 0.001);
-  head.contact_regions.push_back({"lips", VectorXi::Zero(1), skin.F.topRows(2), true});
+  head.contact_regions.push_back({"lips", VectorXi::Zero(1), skin.F.topRows(2)});
   head.contact_pairs = {{"lips", "skull"}};
   head.left_eye_centre = Vector3d(0.03, 0.02, 0.05);
   head.right_eye_centre = Vector3d(-0.03, 0.02, 0.05);

@@ -78,7 +78,6 @@ void expect_same(const HeadTemplate& a, const HeadTemplate& b) {
   EXPECT_EQ(a.identity.deviation, b.identity.deviation);
   ASSERT_EQ(a.contact_regions.size(), b.contact_regions.size());
   EXPECT_EQ(a.contact_regions[0].triangles, b.contact_regions[0].triangles);
-  EXPECT_EQ(a.contact_regions[0].extended, b.contact_regions[0].extended);
   ASSERT_EQ(a.contact_pairs.size(), b.contact_pairs.size());
   EXPECT_EQ(a.contact_pairs[0].obstacle, b.contact_pairs[0].obstacle);
   EXPECT_EQ(a.left_eye_centre, b.left_eye_centre);

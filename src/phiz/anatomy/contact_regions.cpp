@@ -77,35 +77,6 @@ void release_vertices_inside(HeadTemplate& head, const std::string& part) {
   }
 }
 
-ContactRegion& contact_of(HeadTemplate& head, const std::string& name) {
-  return *std::find_if(head.contact_regions.begin(), head.contact_regions.end(),
-                       [&name](const ContactRegion& contact) { return contact.name == name; });
-}
-
-/// Takes the vertices of the outer thirds out of the margins of an eye's lids: towards the corners the lids are one
-/// skin that folds, and being behind the other's plane is no penetration.
-void release_canthi(HeadTemplate& head, const std::string& side) {
-  constexpr double corner = 0.003, end = 0.35;  // metres from the other lid; share of the length
-  ContactRegion &upper = contact_of(head, side + "UpperLidMargin"), &lower = contact_of(head, side + "LowerLidMargin");
-  if (upper.vertices.size() == 0 || lower.vertices.size() == 0) return;
-  const VectorXi above = upper.vertices, below = lower.vertices;
-  const MatrixX3d& V = head.volume.V;
-  const double right = std::min(V(above, 0).minCoeff(), V(below, 0).minCoeff());
-  const double left = std::max(V(above, 0).maxCoeff(), V(below, 0).maxCoeff());
-  const auto keep_middle = [&](VectorXi& vertices, const VectorXi& others) {
-    const MatrixX3d other = V(others, Eigen::all);
-    Eigen::Index kept = 0;
-    for (const int v : vertices) {
-      const double along = (V(v, 0) - right) / (left - right);
-      const double away = (other.rowwise() - V.row(v)).rowwise().norm().minCoeff();
-      if (along > end && along < 1 - end && away > corner) vertices(kept++) = v;
-    }
-    vertices.conservativeResize(kept);
-  };
-  keep_middle(upper.vertices, below);
-  keep_middle(lower.vertices, above);
-}
-
 }  // namespace
 
 void assign_contacts(HeadTemplate& head, const SkinRegions& regions) {
@@ -135,12 +106,11 @@ void assign_contacts(HeadTemplate& head, const SkinRegions& regions) {
   add("leftCheek", left);
   add("rightCheek", right);
   for (const std::string side : {"left", "right"}) {
-    for (const std::string& lid : {side + "UpperLid", side + "LowerLid"}) add(lid, flags(regions, {lid}, n));
-    for (const std::string& margin : {side + "UpperLidMargin", side + "LowerLidMargin"}) {
-      add(margin, flags(regions, {margin}, n));
-      head.contact_regions.back().extended = true;
-    }
-    release_canthi(head, side);
+    Flags above = flags(regions, {side + "UpperLid"}, n);
+    const Flags below = flags(regions, {side + "LowerLid"}, n);
+    share_seam(above, below, head.skin_triangles);
+    add(side + "UpperLid", above);
+    add(side + "LowerLid", below);
   }
 
   std::vector<std::string> hard{"upperTeeth", "lowerTeeth"};
@@ -157,22 +127,17 @@ void assign_contacts(HeadTemplate& head, const SkinRegions& regions) {
   for (const std::string side : {"left", "right"}) {
     head.contact_pairs.push_back({side + "UpperLid", side + "Eye"});
     head.contact_pairs.push_back({side + "LowerLid", side + "Eye"});
-    // The lids meet with their margins, edge to edge.
-    head.contact_pairs.push_back({side + "UpperLidMargin", side + "LowerLidMargin"});
-    head.contact_pairs.push_back({side + "LowerLidMargin", side + "UpperLidMargin"});
+    head.contact_pairs.push_back({side + "UpperLid", side + "LowerLid"});
+    head.contact_pairs.push_back({side + "LowerLid", side + "UpperLid"});
   }
-  // A coarse skin has too few triangles in the narrowest regions.
-  constexpr Eigen::Index fewest = 12;
-  const auto is_too_coarse = [](const ContactRegion& contact) {
-    return contact.triangles.rows() < (contact.extended ? fewest : 1);
-  };
+  const auto is_empty = [](const ContactRegion& contact) { return contact.triangles.rows() == 0; };
   const auto is_missing = [&](const std::string& name) {
     return std::any_of(head.contact_regions.begin(), head.contact_regions.end(),
-                       [&](const ContactRegion& contact) { return contact.name == name && is_too_coarse(contact); });
+                       [&](const ContactRegion& contact) { return contact.name == name && is_empty(contact); });
   };
   std::erase_if(head.contact_pairs,
                 [&](const ContactPair& pair) { return is_missing(pair.vertices) || is_missing(pair.obstacle); });
-  std::erase_if(head.contact_regions, is_too_coarse);
+  std::erase_if(head.contact_regions, is_empty);
 }
 
 }  // namespace phiz

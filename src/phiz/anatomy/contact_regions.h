@@ -15,10 +15,9 @@ using SkinRegions = std::map<std::string, VectorXi>;
 /// Fills contact_regions (lips, inner walls of the cheeks, lids) and contact_pairs (lip against lip, lips and cheeks
 /// against teeth and gums, lids against eyes and each other). `regions`: those of the simulation skin, whose vertices
 /// come first in head.volume; needed are upperLip, lowerLip, upperLipInner, lowerLipInner, mouthBag, oralRoof,
-/// oralFloor, and for either side leftUpperLid, leftLowerLid, leftUpperLidMargin, leftLowerLidMargin. Uses
-/// head.skin_triangles and the parts; gums that are no closed surface are no obstacles. Left out are: vertices inside
-/// of gums at rest; the outer thirds of the lids, for lid against lid; what lies behind the last teeth; regions without
-/// a triangle, and margins of lids with fewer than a dozen, as on coarse skins.
+/// oralFloor, and for either side leftUpperLid, leftLowerLid. Uses head.skin_triangles and the parts; gums that are no
+/// closed surface are no obstacles. Left out are: vertices inside of gums at rest; what lies behind the last teeth;
+/// regions without a triangle.
 void assign_contacts(HeadTemplate& head, const SkinRegions& regions);
 
 }  // namespace phiz

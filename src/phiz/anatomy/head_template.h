@@ -88,9 +88,6 @@ struct ContactRegion {
   std::string name;
   VectorXi vertices;    ///< rows of volume.V whose penetration is checked
   MatrixX3i triangles;  ///< triangles over rows of volume.V, outward, on which others are projected
-  /// Beside its rim the plane of the nearest face still holds: for narrow strips that meet face to face and must not
-  /// slip past each other, such as the margins of the lids.
-  bool extended = false;
 };
 
 /// Vertices of region `vertices` must stay outside of `obstacle`: the triangles of another region, or a rigid part.

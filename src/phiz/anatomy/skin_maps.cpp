@@ -17,7 +17,7 @@ SparseMatrixd sample_skin(const TriangleMesh& drawn, const MatrixX3d& simulated)
 }
 
 SparseMatrixd smooth_interpolation(const TriangleMesh& drawn, const SparseMatrixd& sampling) {
-  constexpr double least_weight = 0.003, firmness = 1e3;
+  constexpr double least_weight = 0.003, firmness = 1e3, tension = 1 / (0.001 * 0.001);
   constexpr Eigen::Index block = 96;
   const Eigen::Index n = drawn.V.rows(), s = sampling.rows();
   const SparseMatrixd L = cotangent_laplacian(drawn.V, drawn.F);
@@ -25,7 +25,7 @@ SparseMatrixd smooth_interpolation(const TriangleMesh& drawn, const SparseMatrix
   const SparseMatrixd bending = L * mass.cwiseInverse().asDiagonal() * L;
   const double scale = firmness * bending.diagonal().mean();
   const SparseMatrixd samples = sampling.transpose();
-  const SparseCholesky system(SparseMatrixd(bending + scale * SparseMatrixd(samples * sampling)));
+  const SparseCholesky system(SparseMatrixd(bending + tension * L + scale * SparseMatrixd(samples * sampling)));
 
   const Eigen::Index blocks = (s + block - 1) / block;
   std::vector<std::vector<Eigen::Triplet<double>>> found(static_cast<std::size_t>(blocks));

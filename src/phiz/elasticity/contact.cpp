@@ -83,8 +83,8 @@ ContactScene::~ContactScene() = default;
 ContactScene::ContactScene(ContactScene&&) noexcept = default;
 ContactScene& ContactScene::operator=(ContactScene&&) noexcept = default;
 
-int ContactScene::add_patch(const MatrixX3d& rest, const MatrixX3i& triangles, bool extended) {
-  state_->obstacles.push_back(Obstacle::patch(rest, triangles, extended));
+int ContactScene::add_patch(const MatrixX3d& rest, const MatrixX3i& triangles) {
+  state_->obstacles.push_back(Obstacle::patch(rest, triangles));
   return static_cast<int>(state_->obstacles.size()) - 1;
 }
 
@@ -152,7 +152,7 @@ void ContactScene::State::search(Watch& watch, const Vector3d& p) const {
   }
   // The far side of an obstacle and the rim of a patch are no contact, yet near: look again.
   watch.clear = nearest ? std::abs(nearest->gap) : reach;
-  watch.known = watch.clear > options.margin && (!nearest || (nearest->gap > 0 && nearest->beside_rim == 0));
+  watch.known = watch.clear > options.margin && (!nearest || nearest->gap > 0);
   watch.searched = true;
   watch.at = p;
   watch.travel = obstacle.travel();

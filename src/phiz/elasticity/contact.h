@@ -50,10 +50,9 @@ class ContactScene {
   ContactScene(ContactScene&&) noexcept;
   ContactScene& operator=(ContactScene&&) noexcept;
 
-  /// An obstacle that is a patch of the body: outward triangles over its vertices. Up to 1.5 mm beside the rim of
-  /// an `extended` one the plane of the nearest face holds; beside that of any other there is no contact. Returns its
-  /// number.
-  int add_patch(const MatrixX3d& rest, const MatrixX3i& triangles, bool extended = false);
+  /// An obstacle that is a patch of the body: outward triangles over its vertices. Beside its rim there is no contact.
+  /// Returns its number.
+  int add_patch(const MatrixX3d& rest, const MatrixX3i& triangles);
   /// A rigid obstacle with outward triangles. Returns its number.
   int add_rigid(const TriangleMesh& mesh);
   /// Vertices that must stay outside of an obstacle. `own_patch`: number of the patch that they belong to, or -1. A

@@ -12,7 +12,7 @@
 
 namespace phiz {
 
-Obstacle Obstacle::patch(const MatrixX3d& rest, const MatrixX3i& triangles, bool extended) {
+Obstacle Obstacle::patch(const MatrixX3d& rest, const MatrixX3i& triangles) {
   std::vector<int> vertices(triangles.data(), triangles.data() + triangles.size());
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
@@ -26,9 +26,7 @@ Obstacle Obstacle::patch(const MatrixX3d& rest, const MatrixX3i& triangles, bool
     for (int k = 0; k < 3; ++k)
       F(f, k) =
           static_cast<int>(std::lower_bound(vertices.begin(), vertices.end(), triangles(f, k)) - vertices.begin());
-  Obstacle patch(V, F, std::move(vertices));
-  patch.extended_ = extended;
-  return patch;
+  return {V, F, std::move(vertices)};
 }
 
 Obstacle Obstacle::rigid(const TriangleMesh& mesh) {
@@ -173,16 +171,6 @@ std::optional<SignedContact> Obstacle::closest(const Vector3d& point, double rea
     normal = vertex_normal(F_(f, k));
   }
   const Vector3d r = p - near->position;
-  constexpr double most_beside = 1.5e-3;  // metres
-  const double over_plane = r.dot(face_normal(f));
-  const double beside = std::sqrt(std::max(0.0, near->squared_distance - over_plane * over_plane));
-  if (contact.on_rim && extended_ && beside < most_beside) {
-    contact.on_rim = false;
-    contact.beside_rim = beside;
-    contact.normal = face_normal(f);
-    contact.gap = over_plane;
-    return contact;
-  }
   const double distance = std::sqrt(near->squared_distance);
   const double sign = r.dot(normal) >= 0 ? 1 : -1;
   contact.gap = sign * distance;

@@ -18,15 +18,12 @@ struct SignedContact {
   int triangle = -1;
   Vector3d barycentric = Vector3d::Zero();
   bool on_rim = false;  ///< the closest point lies on the boundary of an open patch: there is no inside or outside
-  /// Metres from the rim of an extended patch, which goes on a little in the plane of the face, 0 elsewhere. The gap is
-  /// to that plane and says nothing of the planes of other faces.
-  double beside_rim = 0;
 };
 
 class Obstacle {
  public:
   /// A patch: `triangles` over rows of `rest`.
-  static Obstacle patch(const MatrixX3d& rest, const MatrixX3i& triangles, bool extended = false);
+  static Obstacle patch(const MatrixX3d& rest, const MatrixX3i& triangles);
   static Obstacle rigid(const TriangleMesh& mesh);
 
   bool is_rigid() const { return vertices_.empty(); }
@@ -81,7 +78,6 @@ class Obstacle {
   Vector3d low_, high_;
   double travel_ = 0;
   bool refitted_ = true;
-  bool extended_ = false;
 };
 
 }  // namespace phiz

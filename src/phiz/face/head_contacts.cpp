@@ -19,7 +19,7 @@ HeadContacts::HeadContacts(const HeadTemplate& head, const ContactOptions& optio
   const auto patch = [&](const ContactRegion& r) {
     const auto found = patches.find(r.name);
     return found != patches.end() ? found->second
-                                  : patches[r.name] = scene.add_patch(head.volume.V, r.triangles, r.extended);
+                                  : patches[r.name] = scene.add_patch(head.volume.V, r.triangles);
   };
   for (const ContactPair& pair : head.contact_pairs) {
     const ContactRegion* moving = region(pair.vertices);

@@ -152,9 +152,7 @@ IdentityModel stored_identity(const Hdf5Group& group) {
 
 void store_contact(const Hdf5Group& group, const HeadTemplate& head) {
   std::vector<std::string> names, vertices, obstacles;
-  VectorXi extended(static_cast<Eigen::Index>(head.contact_regions.size()));
   for (const ContactRegion& region : head.contact_regions) {
-    extended[static_cast<Eigen::Index>(names.size())] = region.extended ? 1 : 0;
     const Hdf5Group g = group.create_group(std::to_string(names.size()));
     g.write("vertices", region.vertices);
     g.write("triangles", region.triangles);
@@ -165,7 +163,6 @@ void store_contact(const Hdf5Group& group, const HeadTemplate& head) {
     obstacles.push_back(pair.obstacle);
   }
   group.write_strings("names", names);
-  group.write("extended", extended);
   group.write_strings("pair_vertices", vertices);
   group.write_strings("pair_obstacle", obstacles);
 }
@@ -173,14 +170,10 @@ void store_contact(const Hdf5Group& group, const HeadTemplate& head) {
 void read_contact(const Hdf5Group& group, HeadTemplate& head) {
   const auto names = group.read_strings("names");
   const auto count = static_cast<Eigen::Index>(names.size());
-  // Since version 2.
-  const VectorXi extended =
-      group.has_array("extended") ? group.read<VectorXi>("extended") : VectorXi(VectorXi::Zero(count));
-  if (extended.size() != count) reject(group.where("extended"), "needs one number per contact region");
   for (Eigen::Index i = 0; i < count; ++i) {
     const Hdf5Group g = group.group(std::to_string(i));
-    head.contact_regions.push_back({names[static_cast<std::size_t>(i)], g.read<VectorXi>("vertices"),
-                                    g.read<MatrixX3i>("triangles"), extended[i] != 0});
+    head.contact_regions.push_back(
+        {names[static_cast<std::size_t>(i)], g.read<VectorXi>("vertices"), g.read<MatrixX3i>("triangles")});
   }
   const auto vertices = group.read_strings("pair_vertices");
   const auto obstacles = group.read_strings("pair_obstacle");
