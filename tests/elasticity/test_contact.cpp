@@ -257,6 +257,27 @@ TEST(Contact, LeavesThatCrossAtTheirHingePenetrateAndThoseThatOpenAllTheWayDoNot
     EXPECT_EQ(hinge.penetration(degrees * 3.14159265358979323846 / 180), 0) << degrees;
 }
 
+TEST(Contact, AVertexThatFacesAsItsObstaclePenetratesUnlessItIsDeep) {
+  // Two sheets that face up, one over the middle of the other.
+  MatrixX3d rest(8, 3);
+  rest << 0, 0, 0, 20, 0, 0, 20, 20, 0, 0, 20, 0, 8, 8, 1, 12, 8, 1, 12, 12, 1, 8, 12, 1;
+  rest *= 1e-3;
+  MatrixX3i below(2, 3), above(2, 3);
+  below << 0, 1, 2, 0, 2, 3;
+  above << 4, 5, 6, 4, 6, 7;
+  ContactScene contacts(rest.rows());
+  const int obstacle = contacts.add_patch(rest, below), own = contacts.add_patch(rest, above);
+  contacts.add_pair(VectorXi::LinSpaced(4, 4, 7), obstacle, own, rest);
+  const auto penetration = [&](double height) {
+    MatrixX3d x = rest;
+    x.bottomRows(4).col(2).setConstant(height);
+    return contacts.penetration(x);
+  };
+  EXPECT_EQ(penetration(1e-4), 0);
+  EXPECT_NEAR(penetration(-2e-4), 2e-4, 1e-12) << "pressed in while the skins fold";
+  EXPECT_EQ(penetration(-1e-3), 0) << "on the other side";
+}
+
 TEST(Contact, MultipliersSolveTheComplementarityProblem) {
   Random random(7);
   for (int trial = 0; trial < 200; ++trial) {

@@ -157,6 +157,21 @@ TEST(ProjectiveDynamics, AReachableTargetIsReachedExactly) {
   EXPECT_NEAR(statistics.volume_change, 0, 1e-9);
 }
 
+TEST(ProjectiveDynamics, AStateThatRoundingKeepsFromImprovingIsConverged) {
+  ElasticBody body = body_of(small_box(), {1, 1, 30}, at_bottom);
+  body.precision = Precision::single;
+  ProjectiveDynamics solver(body);
+  MatrixX3d x = shaken(body.rest, 1e-3, 3);
+  SolveOptions options;
+  options.max_iterations = 200;
+  options.step_tolerance = 1e-7;
+  options.residual_tolerance = 1e9;
+  for (int again = 0; again < 30; ++again) {
+    const SolveStatistics statistics = solver.solve(x, options);
+    EXPECT_TRUE(statistics.converged) << again << ": " << brief_report(statistics);
+  }
+}
+
 TEST(ProjectiveDynamics, VolumeTermKeepsTheVolumeOfASqueezedBlock) {
   double change[2];
   for (int k = 0; k < 2; ++k) {

@@ -29,7 +29,10 @@ struct Watch {
 
 constexpr double search_reach = 2.5e-3;  ///< beyond the margin; a longer search is seldom of use for the next call
 constexpr double hollow_reach = 3e-4;    ///< how near a second face must be to hold a vertex in a hollow, metres
-constexpr double same_side = 0.5;        ///< cosine above which a penetrating vertex faces as its obstacle does
+/// A penetrating vertex that faces as its obstacle does (cosine above `same_side`) has come through from behind or
+/// belongs to the same skin past the seam, unless it is no deeper than `shallow` and its way over the seam is long.
+constexpr double same_side = 0.5;
+constexpr double shallow = 3e-4, long_way = 5e-3;  // metres
 /// A vertex at an angle t behind a face has a way of cot(t/2) times its depth over the seam: with less than this it has
 /// not passed through the closed seam, but the seam has opened by more than three quarters of a turn.
 constexpr double least_detour = 2;
@@ -50,10 +53,11 @@ struct ContactScene::State {
   bool is_contact(const Watch& watch, const Vector3d& p, const std::optional<SignedContact>& closest) const {
     if (!closest || closest->on_rim || closest->gap < -options.depth_limit) return false;
     if (closest->gap >= 0 || watch.own_patch < 0) return true;
-    if (obstacles[static_cast<std::size_t>(watch.own_patch)].normal_at(watch.vertex).dot(closest->normal) > same_side)
-      return false;
-    const std::vector<int>& seam = seams[static_cast<std::size_t>(watch.pair)];
-    return seam.empty() || obstacle_of(watch).way_over(seam, p, *closest) >= -least_detour * closest->gap;
+    const double depth = -closest->gap;
+    const double way = obstacle_of(watch).way_over(seams[static_cast<std::size_t>(watch.pair)], p, *closest);
+    if (way < least_detour * depth) return false;
+    const Vector3d facing = obstacles[static_cast<std::size_t>(watch.own_patch)].normal_at(watch.vertex);
+    return facing.dot(closest->normal) <= same_side || (depth < shallow && way > long_way);
   }
 
   const Obstacle& obstacle_of(const Watch& watch) const { return obstacles[static_cast<std::size_t>(watch.obstacle)]; }
@@ -158,7 +162,7 @@ void ContactScene::State::search(Watch& watch, const Vector3d& p) const {
   watch.travel = obstacle.travel();
 }
 
-std::vector<ContactRow> ContactScene::detect(const PositionView& positions) {
+std::vector<ContactRow> ContactScene::detect(const PositionView& positions, double patience) {
   State& s = *state_;
   for (Obstacle& obstacle : s.obstacles) obstacle.follow(positions);
   enum : char { clear, kept, stale };
@@ -168,7 +172,7 @@ std::vector<ContactRow> ContactScene::detect(const PositionView& positions) {
       [&](std::ptrdiff_t i) {
         const Watch& watch = s.watches[static_cast<std::size_t>(i)];
         const Vector3d p = positions[watch.vertex];
-        const bool is_kept = watch.searched && s.way_since_search(watch, p) <= s.options.lag;
+        const bool is_kept = watch.searched && s.way_since_search(watch, p) <= patience * s.options.lag;
         status[static_cast<std::size_t>(i)] = s.clearance(watch, p) > s.options.margin ? clear : is_kept ? kept : stale;
       },
       512);

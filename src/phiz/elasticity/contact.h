@@ -67,8 +67,8 @@ class ContactScene {
 
   /// Rows of all pairs whose gap is below the margin, in a fixed order; more than one for a vertex in a hollow. Skips
   /// vertices that cannot have come near since the last call. Planes may be as old as the lag allows; gaps are those of
-  /// the present state.
-  std::vector<ContactRow> detect(const PositionView& positions);
+  /// the present state. `patience` stretches the lag.
+  std::vector<ContactRow> detect(const PositionView& positions, double patience = 1);
   /// The next detect() depends on its state only.
   void forget();
 

@@ -51,6 +51,11 @@ double row_product(const ContactRow& row, const Vectors& v) {
   return sum.dot(row.normal);
 }
 
+bool is_converged(double way_to_go, const SolveStatistics& statistics, const SolveOptions& options) {
+  return way_to_go <= options.step_tolerance && statistics.residual <= options.residual_tolerance &&
+         statistics.penetration <= options.penetration_tolerance;
+}
+
 double deepest(const ContactRows& contact) {
   double depth = 0;
   for (std::size_t i = 0; i < contact.rows.size(); ++i)
@@ -67,10 +72,10 @@ Descent::Descent(ElasticSystem& system, const SolveOptions& options, ContactScen
       inverse_(memory_of(system, options.history)),
       force_(float_vector(system.size())) {}
 
-ContactRows Descent::detect(const double* x) {
+ContactRows Descent::detect(const double* x, double patience) {
   ContactRows out;
   if (contacts_ == nullptr) return out;
-  for (ContactRow row : contacts_->detect({x, 4, system_.row_of.data()})) {
+  for (ContactRow row : contacts_->detect({x, 4, system_.row_of.data()}, patience)) {
     const std::int64_t vertex = (static_cast<std::int64_t>(row.pair) << 32) + row.vertices[0];
     int kept = 0;
     for (int k = 0; k < row.count; ++k) {
@@ -217,8 +222,8 @@ SolveStatistics Descent::run(double* x) {
     const Eigen::VectorXd products = dots({g.get(), last_p.get(), p.get()}, p.get(), size);
     const double decrease = contact_work - products[0];
     const double reach = longest_move(p.get(), system_.free);
-    // Where contacts switch from face to face two states can call each other for ever; steps that turn back are
-    // shortened.
+    // Where contacts switch from face to face two states can call each other for ever: steps that turn back are
+    // shortened, and contacts keep their planes the longer for it.
     const double back = products[1], length2 = products[2];
     if (!contact.rows.empty() && statistics.iterations > settle && back < -0.3 * std::sqrt(length2 * last_length2))
       relaxation *= 0.6;
@@ -247,7 +252,12 @@ SolveStatistics Descent::run(double* x) {
     }
     if (!accepted) {
       if (inverse_.pairs() == 0) {
+        // Not even the plain step helps: the energy is as low as rounding lets it be seen.
+        statistics.last_step = reach;
+        statistics.contacts = static_cast<int>((lambda_.array() > 0).count());
         statistics.residual = residual(contact, g.get());
+        statistics.penetration = deepest(contact);
+        statistics.converged = is_converged(plain_shortfall * reach, statistics, options_);
         break;
       }
       inverse_.clear();  // fall back to a plain step from the same place
@@ -258,14 +268,13 @@ SolveStatistics Descent::run(double* x) {
     statistics.last_step = reach * std::min(1.0, alpha / relaxation);
     statistics.contacts = static_cast<int>((lambda_.array() > 0).count());
     // A plain step is short of the way to go by up to the ratio of the softest to the stiffest response.
-    const bool small_step = (plain ? plain_shortfall : 1.0) * statistics.last_step <= options_.step_tolerance;
+    const double way_to_go = (plain ? plain_shortfall : 1.0) * statistics.last_step;
     const bool last = statistics.iterations == options_.max_iterations;
-    const bool stalled = relaxation < 0.5 && alpha * reach <= options_.step_tolerance;
-    if (small_step || last || stalled) statistics.residual = residual(contact, next_g.get());
-    contact = detect(x);
+    const bool stalled = relaxation < 0.2 && alpha * reach <= options_.step_tolerance;
+    if (way_to_go <= options_.step_tolerance || last || stalled) statistics.residual = residual(contact, next_g.get());
+    contact = detect(x, 1 / relaxation);
     statistics.penetration = deepest(contact);
-    statistics.converged = small_step && statistics.residual <= options_.residual_tolerance &&
-                           statistics.penetration <= options_.penetration_tolerance;
+    statistics.converged = is_converged(way_to_go, statistics, options_);
     if (statistics.iterations > settle && statistics.penetration <= options_.penetration_tolerance) {
       std::copy_n(x, 4 * system_.vertices, apart.get());
       has_apart = true;

@@ -26,7 +26,7 @@ class Descent {
   SolveStatistics run(double* x);
 
  private:
-  ContactRows detect(const double* x);
+  ContactRows detect(const double* x, double patience = 1);
   /// Step p from the gradient and its image under A^-1; fills lambda_ and row_motion_.
   void find_step(const ContactRows& contact, const float* gradient, const float* inverse_gradient, float* p);
   /// Fills lambda_ for the rows `working`. U: their products with the quasi-Newton pairs.
