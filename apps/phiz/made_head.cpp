@@ -5,9 +5,16 @@
 
 #include <nlohmann/json.hpp>
 
+#include "phiz/core/progress.h"
 #include "phiz/io/container.h"
 
 namespace phiz {
+
+HeadTemplate make_builtin_head(BuiltinOptions options) {
+  Progress progress("built-in head", builtin_head_steps);
+  options.report = [&progress](const std::string& step) { progress.begin(step); };
+  return build_builtin_head(options);
+}
 
 void save_and_report(const std::string& file, const HeadTemplate& head, std::chrono::steady_clock::time_point start,
                      const Report& report, const std::string& note, const nlohmann::json& more) {

@@ -9,8 +9,6 @@
 
 #include "made_head.h"
 #include "options.h"
-#include "phiz/anatomy/builtin/builtin_head.h"
-#include "phiz/core/progress.h"
 #include "phiz/io/output_file.h"
 #include "report.h"
 #include "verbs.h"
@@ -32,13 +30,7 @@ void make_builtin(const BuiltinArguments& arguments) {
   options.size = head_size(arguments.size);
   options.person = arguments.person;
   require_writable(arguments.output);
-  HeadTemplate head;
-  {
-    Progress progress("built-in head", builtin_head_steps);
-    options.report = [&progress](const std::string& step) { progress.begin(step); };
-    head = build_builtin_head(options);
-  }
-  save_and_report(arguments.output, head, start, arguments.report, "", nlohmann::json::object());
+  save_and_report(arguments.output, make_builtin_head(options), start, arguments.report, "", nlohmann::json::object());
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ struct PersonArguments {
 void make_random_person(const PersonArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   require_writable(arguments.output);
-  const HeadTemplate head = load_head_template(arguments.head);
+  const HeadTemplate head = arguments.head.empty() ? make_builtin_head({}) : load_head_template(arguments.head);
   const VectorXd coefficients = arguments.spread * random_coefficients(head.identity, arguments.seed);
   HeadTemplate person = make_person(head, coefficients);
   person.name += "-" + std::to_string(arguments.seed);
@@ -44,8 +44,9 @@ void make_random_person(const PersonArguments& arguments) {
 void add_template_person(CLI::App& verb) {
   CLI::App* person = verb.add_subcommand("person", "Make a random person of a template, anatomy included");
   auto arguments = std::make_shared<PersonArguments>();
-  person->add_option("head", arguments->head, "The template, a .phiz file with a model of people")
-      ->required()
+  person
+      ->add_option("head", arguments->head,
+                   "The template, a .phiz file with a model of people; the built-in head without")
       ->check(CLI::ExistingFile)
       ->type_name("HEAD");
   person->add_option("--seed", arguments->seed, "Which person: the same for the same number")->capture_default_str();
@@ -57,7 +58,9 @@ void add_template_person(CLI::App& verb) {
       ->check(phiz_name())
       ->type_name("FILE");
   add_report(*person, arguments->report);
-  person->footer("Example:\n  phiz template person open.phiz --seed 7 -o person.phiz");
+  person->footer(
+      "Examples:\n  phiz template person open.phiz --seed 7 -o person.phiz\n  phiz template person --seed 7 -o "
+      "person.phiz");
   person->callback([arguments] { make_random_person(*arguments); });
 }
 
