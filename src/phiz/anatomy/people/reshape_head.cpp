@@ -165,15 +165,15 @@ class Carry {
   TetQuery query_;
 };
 
-void carry_muscles(HeadTemplate& head, const HeadTemplate& before, const Carry& carry) {
-  const TetRest rest = tet_rest(before.volume.V, before.volume.T);
+void carry_muscles(HeadTemplate& head, const HeadTemplate& before, const SpaceWarp& warp, const Carry& carry) {
   for (Muscle& muscle : head.muscles) {
     for (MatrixX3d& fibre : muscle.fibres) fibre = carry(fibre);
     muscle.surface.V = carry(muscle.surface.V);
-    for (Eigen::Index i = 0; i < muscle.tets.size(); ++i)
-      muscle.direction.row(i) = (deformation_gradient(head.volume.V, head.volume.T, rest, muscle.tets[i]) *
-                                 muscle.direction.row(i).transpose())
-                                    .normalized();
+    // With the warp, not with the tets, whose inner vertices were moved for their shape.
+    parallel_for(muscle.tets.size(), [&](Eigen::Index i) {
+      const Vector3d centre = before.volume.V(before.volume.T.row(muscle.tets[i]), Eigen::all).colwise().mean();
+      muscle.direction.row(i) = (warp.gradient(centre) * muscle.direction.row(i).transpose()).normalized();
+    });
   }
 }
 
@@ -264,7 +264,7 @@ HeadTemplate reshape_head(const HeadTemplate& head, const MatrixX3d& skin) {
   require_upright_tets(result);
   result.skin.V = skin;
   const Carry carry(head, result.volume.V, warp);
-  carry_muscles(result, head, carry);
+  carry_muscles(result, head, warp, carry);
   carry_parts(result, head.skin, warp, carry);
   clear_drawn_bones(result);
   carry_eye("leftEye", head.skin.V, skin, result.left_eye_centre, result);
