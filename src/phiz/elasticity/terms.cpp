@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "phiz/elasticity/terms.h"
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <cmath>
 
 #include "phiz/numerics/svd3.h"
@@ -17,6 +19,41 @@ Eigen::Matrix<double, 9, 1> outer(const Svd3& svd, int i, int j) {
   return Eigen::Map<const Eigen::Matrix<double, 9, 1>>(m.data());
 }
 
+/// How R(F S) turns: in the three twist modes of G = F S only, at the rate 2 / (s_i + s_j) each.
+struct Twists {
+  Svd3 svd;
+  Eigen::Matrix<double, 9, 3> modes;  ///< by F, each times S
+  Vector3d rates;
+
+  Twists(const Matrix3d& F, const Matrix3d& S) : svd(svd3(F * S)) {
+    for (int k = 0; k < 3; ++k) {
+      const Matrix3d by_F = twist(k) * S;
+      modes.col(k) = Eigen::Map<const Eigen::Matrix<double, 9, 1>>(by_F.data());
+      rates[k] = 2 / guarded(svd.s[pairs[k][0]] + svd.s[pairs[k][1]]);
+    }
+  }
+
+  Matrix3d twist(int k) const {
+    const auto [i, j] = pairs[k];
+    return std::sqrt(0.5) * (svd.U.col(i) * svd.V.col(j).transpose() - svd.U.col(j) * svd.V.col(i).transpose());
+  }
+
+  /// Change of R when G changes by dG.
+  Matrix3d turn(const Matrix3d& dG) const {
+    Matrix3d dR = Matrix3d::Zero();
+    for (int k = 0; k < 3; ++k) {
+      const Matrix3d t = twist(k);
+      dR += rates[k] * t.cwiseProduct(dG).sum() * t;
+    }
+    return dR;
+  }
+
+  static double guarded(double sum) {
+    constexpr double least = 1e-6;
+    return std::abs(sum) < least ? std::copysign(least, sum) : sum;
+  }
+};
+
 }  // namespace
 
 double shape_energy(const Matrix3d& F, const Matrix3d& S) {
@@ -28,16 +65,24 @@ Matrix3d shape_gradient(const Matrix3d& F, const Matrix3d& S) {
 }
 
 Matrix9d shape_hessian(const Matrix3d& F, const Matrix3d& S) {
-  // R(F S) turns in the three twist modes of G = F S only, at the rate 2 / (s_i + s_j) each.
-  const Svd3 svd = svd3(F * S);
-  Matrix9d H = 2 * Matrix9d::Identity();
-  for (const auto& [i, j] : pairs) {
-    const Matrix3d twist =
-        std::sqrt(0.5) * (svd.U.col(i) * svd.V.col(j).transpose() - svd.U.col(j) * svd.V.col(i).transpose()) * S;
-    const Eigen::Map<const Eigen::Matrix<double, 9, 1>> u(twist.data());
-    H -= 2 * (2 / (svd.s[i] + svd.s[j])) * u * u.transpose();
-  }
-  return H;
+  const Twists twists(F, S);
+  return 2 * (Matrix9d::Identity() - twists.modes * twists.rates.asDiagonal() * twists.modes.transpose());
+}
+
+Matrix9d shape_projected_hessian(const Matrix3d& F, const Matrix3d& S) {
+  // The identity less a matrix of rank three: what exceeds 1 of that is cut off.
+  const Twists twists(F, S);
+  const Eigen::HouseholderQR<Eigen::Matrix<double, 9, 3>> qr(twists.modes);
+  const Eigen::Matrix<double, 9, 3> Q = qr.householderQ() * Eigen::Matrix<double, 9, 3>::Identity();
+  const Matrix3d R = qr.matrixQR().topRows<3>().triangularView<Eigen::Upper>();
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(R * twists.rates.asDiagonal() * R.transpose());
+  const Eigen::Matrix<double, 9, 3> axes = Q * eigen.eigenvectors();
+  return 2 * (Matrix9d::Identity() - axes * eigen.eigenvalues().cwiseMin(1).asDiagonal() * axes.transpose());
+}
+
+Matrix3d shape_gradient_by_stretch(const Matrix3d& F, const Matrix3d& S, const Matrix3d& dS) {
+  const Twists twists(F, S);
+  return -2 * (twists.svd.U * twists.svd.V.transpose() * dS + twists.turn(F * dS) * S);
 }
 
 double volume_energy(const Matrix3d& F) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The energy terms of projective dynamics, each as energy, gradient and Hessian of one element of unit weight
-/// (Ichim 2017, eq. 5.1: E = |G x - P(G x)|^2). The terms of a tet are functions of its deformation gradient F; a 3x3
-/// matrix is read as a 9-vector column by column in the Hessians. Multiply by rest volume and stiffness to get joules.
-/// The constant quadratic part of every term, which projective dynamics factorises, is 2 G^T G.
+/// Energy terms of tets and vertices, those of projective dynamics, each as energy, gradient and Hessian of one element
+/// of unit weight (Ichim 2017, eq. 5.1: E = |G x - P(G x)|^2). The terms of a tet are functions of its deformation
+/// gradient F; a 3x3 matrix is read as a 9-vector column by column in the Hessians. Multiply by rest volume and
+/// stiffness to get joules. The constant quadratic part of every term, which projective dynamics factorises, is 2 G^T
+/// G.
 #pragma once
 
 #include "phiz/geometry/mesh.h"
@@ -16,6 +17,10 @@ using Matrix9d = Eigen::Matrix<double, 9, 9>;
 double shape_energy(const Matrix3d& F, const Matrix3d& S);
 Matrix3d shape_gradient(const Matrix3d& F, const Matrix3d& S);
 Matrix9d shape_hessian(const Matrix3d& F, const Matrix3d& S);
+/// The Hessian without its negative part.
+Matrix9d shape_projected_hessian(const Matrix3d& F, const Matrix3d& S);
+/// Change of the gradient when S changes by the symmetric dS.
+Matrix3d shape_gradient_by_stretch(const Matrix3d& F, const Matrix3d& S, const Matrix3d& dS);
 
 /// Volume term: squared distance of F from the matrices of determinant 1 (E_volume).
 double volume_energy(const Matrix3d& F);
