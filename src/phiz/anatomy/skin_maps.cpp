@@ -17,7 +17,7 @@ SparseMatrixd sample_skin(const TriangleMesh& drawn, const MatrixX3d& simulated)
 }
 
 SparseMatrixd smooth_interpolation(const TriangleMesh& drawn, const SparseMatrixd& sampling) {
-  constexpr double least_weight = 0.003, firmness = 1e3, tension = 1 / (0.001 * 0.001);
+  constexpr double least_weight = 0.003, firmness = 1e3, tension = 1 / (0.0005 * 0.0005);
   constexpr Eigen::Index block = 96;
   const Eigen::Index n = drawn.V.rows(), s = sampling.rows();
   const SparseMatrixd L = cotangent_laplacian(drawn.V, drawn.F);
