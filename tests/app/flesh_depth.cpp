@@ -9,7 +9,7 @@
 
 namespace phiz::testing {
 
-FleshDepth::FleshDepth(const HeadTemplate& head)
+FleshDepth::FleshDepth(const HeadTemplate& head, OwnFlesh own)
     : flesh_(head.volume.T(soft_tets(head), Eigen::all)), skin_(head.skin_triangles) {
   std::set<int> chosen;
   for (const ContactRegion& region : head.contact_regions)
@@ -20,8 +20,9 @@ FleshDepth::FleshDepth(const HeadTemplate& head)
     for (int k = 0; k < 4; ++k)
       for (int l = 0; l < 4; ++l) corners[static_cast<std::size_t>(flesh_(t, k))].insert(flesh_(t, l));
   for (const int v : vertices_) {
-    const std::set<int>& own = corners[static_cast<std::size_t>(v)];
-    surroundings_.emplace_back(own.begin(), own.end());
+    const std::set<int>& around = corners[static_cast<std::size_t>(v)];
+    surroundings_.emplace_back(own == OwnFlesh::tets ? std::vector<int>{v}
+                                                     : std::vector<int>(around.begin(), around.end()));
   }
 }
 

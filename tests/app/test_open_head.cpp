@@ -31,7 +31,7 @@ void expect_sound_take(const std::string& head, Look look) {
   const std::string path = scratch / "take.phiz";
   const Outcome outcome = phiz_command({"animate", head, recording, "-o", path});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const FleshDepth flesh(load_head_template(head));
+  const FleshDepth flesh(load_head_template(head), OwnFlesh::surroundings);
   const TakeReader take(path);
   ASSERT_EQ(take.frames(), 180);
   for (int f = 0; f < take.frames(); ++f) {

@@ -88,7 +88,7 @@ TEST(RandomPoses, ConvergeAndNoLipEntersFleshOrTeeth) {
   }
   // The same by geometry alone.
   const HeadTemplate head = load_head_template(PHIZ_PREVIEW_HEAD);
-  const FleshDepth flesh(head);
+  const FleshDepth flesh(head, OwnFlesh::tets);
   std::vector<int> mouth;
   for (const ContactRegion& region : head.contact_regions)
     if (region.name.find("Lip") != std::string::npos || region.name.find("Cheek") != std::string::npos)

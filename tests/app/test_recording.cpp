@@ -68,7 +68,7 @@ TEST(Recording, StandardHeadPlaysItWithoutPenetrationInversionOrLossOfVolume) {
   const HeadTemplate head = load_head_template(PHIZ_STANDARD_HEAD);
   const std::vector<Eigen::Index> lips = lip_triangles(head);
   EXPECT_EQ(inverted(head.skin.V, head.skin.F, lips), 0);
-  const FleshDepth flesh(head);
+  const FleshDepth flesh(head, OwnFlesh::surroundings);
   const TakeReader take(path);
   ASSERT_EQ(take.frames(), 180);
   for (int f = 0; f < take.frames(); ++f) {

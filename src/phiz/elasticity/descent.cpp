@@ -271,8 +271,10 @@ SolveStatistics Descent::run(double* x) {
     const double way_to_go = (plain ? plain_shortfall : 1.0) * statistics.last_step;
     const bool last = statistics.iterations == options_.max_iterations;
     const bool stalled = relaxation < 0.2 && alpha * reach <= options_.step_tolerance;
-    if (way_to_go <= options_.step_tolerance || last || stalled) statistics.residual = residual(contact, next_g.get());
-    contact = detect(x, 1 / relaxation);
+    const bool judged = way_to_go <= options_.step_tolerance || last || stalled;
+    if (judged) statistics.residual = residual(contact, next_g.get());
+    // Old planes may guide, but not judge.
+    contact = detect(x, judged ? 0 : 1 / relaxation);
     statistics.penetration = deepest(contact);
     statistics.converged = is_converged(way_to_go, statistics, options_);
     if (statistics.iterations > settle && statistics.penetration <= options_.penetration_tolerance) {
