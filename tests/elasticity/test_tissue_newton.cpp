@@ -78,7 +78,7 @@ TEST(Statics, GradientAndHessianAgreeWithFiniteDifferences) {
     body.passive = law;
     TissueEnergy energy(body);
     energy.set_activation(everywhere(body, Vector3d(0.8, 1.1, 1.2).asDiagonal()));
-    const FreeMotion motion(body);
+    const FreeMotion motion(body, body.rest);
     const MatrixX3d x = shaken(body.rest, 1e-3, 4);
     const VectorXd g = motion.reduced(energy.gradient(x));
     const SparseMatrixd H = energy.hessian(x, motion, Stiffness::exact);

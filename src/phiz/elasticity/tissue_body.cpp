@@ -36,6 +36,13 @@ void require_per_tet(const VectorXd& values, const TissueBody& body, const std::
       reject("tissue body", what + " of tet " + std::to_string(t) + " is " + std::to_string(values[t]));
 }
 
+void require_slides(const std::vector<Slide>& slides, Eigen::Index n) {
+  for (const Slide& slide : slides)
+    if (slide.vertex < 0 || slide.vertex >= n || !slide.point.allFinite() || !slide.bend.allFinite() ||
+        !(std::abs(slide.normal.norm() - 1) < 1e-6))
+      reject("tissue body", "the slide of vertex " + std::to_string(slide.vertex) + " is malformed");
+}
+
 }  // namespace
 
 void validate(const TissueBody& body) {
@@ -52,20 +59,37 @@ void validate(const TissueBody& body) {
   require_per_tet(body.active, body, "the active share", 0, 1);
   require_per_tet(body.growth, body, "growth", 1e-3, 1e3);
   require_per_tet(body.density, body, "density", 0, 1e6);
+  if (body.added_mass.size() != 0 &&
+      (body.added_mass.size() != n || !(body.added_mass.minCoeff() >= 0) || !body.added_mass.allFinite()))
+    reject("tissue body", "needs an added mass of 0 or more for every vertex");
   if (body.pinned.size() != static_cast<std::size_t>(n)) reject("tissue body", "needs a pin flag for every vertex");
-  for (const Slide& slide : body.slides)
-    if (slide.vertex < 0 || slide.vertex >= n || !slide.point.allFinite() ||
-        !(std::abs(slide.normal.norm() - 1) < 1e-6))
-      reject("tissue body", "the slide of vertex " + std::to_string(slide.vertex) + " is malformed");
+  require_slides(body.slides, n);
 }
 
-FreeMotion::FreeMotion(const TissueBody& body)
+void put_on_slides(const TissueBody& body, MatrixX3d& x) {
+  // To each surface of a vertex in turn; one or orthogonal planes need one round, curved surfaces a few.
+  constexpr int rounds = 50;
+  constexpr double close = 1e-15;  // metres
+  for (int round = 0; round < rounds; ++round) {
+    double farthest = 0;
+    for (const Slide& slide : body.slides) {
+      if (body.pinned[static_cast<std::size_t>(slide.vertex)] != 0) continue;
+      const Vector3d p = x.row(slide.vertex), n = slide.gradient(p);
+      const double height = slide.height(p);
+      x.row(slide.vertex) -= height / n.squaredNorm() * n.transpose();
+      farthest = std::max(farthest, std::abs(height));
+    }
+    if (farthest <= close) break;
+  }
+}
+
+FreeMotion::FreeMotion(const TissueBody& body, const MatrixX3d& x)
     : first_(VectorXi::Constant(body.rest.rows(), -1)), directions_(static_cast<std::size_t>(body.rest.rows())) {
   std::vector<MatrixX3d> normals(directions_.size());
   for (const Slide& slide : body.slides) {
     MatrixX3d& all = normals[static_cast<std::size_t>(slide.vertex)];
     all.conservativeResize(all.rows() + 1, 3);
-    all.row(all.rows() - 1) = slide.normal.transpose();
+    all.row(all.rows() - 1) = slide.gradient(x.row(slide.vertex)).normalized().transpose();
   }
   std::vector<char> used(directions_.size(), 0);
   for (const int v : body.tets.reshaped()) used[static_cast<std::size_t>(v)] = 1;
@@ -108,7 +132,7 @@ TissueEnergy::TissueEnergy(const TissueBody& body)
     : body_((validate(body), body)),
       rest_(tet_rest(body.rest, body.tets)),
       stretches_(static_cast<std::size_t>(body.tets.rows()), Matrix3d::Identity()),
-      mass_(VectorXd::Zero(body.rest.rows())) {
+      mass_(body.added_mass.size() > 0 ? body.added_mass : VectorXd::Zero(body.rest.rows())) {
   for (Eigen::Index t = 0; t < body_.tets.rows(); ++t) {
     if (body_.density.size() > 0)
       for (int k = 0; k < 4; ++k) mass_[body_.tets(t, k)] += body_.density[t] * rest_.volume[t] / 4;
@@ -125,6 +149,24 @@ void TissueEnergy::set_activation(const std::vector<Matrix3d>& stretches) {
     if (!stretches[t].allFinite() || (stretches[t] - stretches[t].transpose()).norm() > 1e-9)
       reject("activation", "the stretch of tet " + std::to_string(t) + " is not symmetric");
   stretches_ = stretches;
+}
+
+void TissueEnergy::set_slides(const std::vector<Slide>& slides) {
+  require_slides(slides, body_.rest.rows());
+  body_.slides = slides;
+}
+
+void TissueEnergy::set_forces(const MatrixX3d& forces) {
+  if (forces.rows() != 0 && (forces.rows() != body_.rest.rows() || !forces.allFinite()))
+    reject("forces", "need one finite force for every vertex");
+  forces_ = forces;
+}
+
+void TissueEnergy::set_inertia(double time_step, const MatrixX3d& prediction) {
+  if (prediction.rows() != 0 && (prediction.rows() != body_.rest.rows() || !prediction.allFinite() || !(time_step > 0)))
+    reject("inertia", "needs a positive time step and one finite prediction for every vertex");
+  time_step_ = time_step;
+  prediction_ = prediction;
 }
 
 double TissueEnergy::tet_energy(Eigen::Index tet, const Matrix3d& F) const {
@@ -163,7 +205,11 @@ double TissueEnergy::value(const MatrixX3d& x) const {
     for (std::ptrdiff_t t = begin; t < end; ++t) sum += rest_.volume[t] * tet_energy(t, elastic_gradient(x, t));
     return sum;
   });
-  return elastic - mass_.dot(x * body_.gravity);
+  double value = elastic - mass_.dot(x * body_.gravity);
+  if (forces_.rows() > 0) value -= forces_.cwiseProduct(x).sum();
+  if (prediction_.rows() > 0)
+    value += mass_.dot((x - prediction_).rowwise().squaredNorm()) / (2 * time_step_ * time_step_);
+  return value;
 }
 
 MatrixX3d TissueEnergy::gradient(const MatrixX3d& x, VectorXd* magnitude) const {
@@ -176,6 +222,8 @@ MatrixX3d TissueEnergy::gradient(const MatrixX3d& x, VectorXd* magnitude) const 
       },
       grain);
   MatrixX3d out = -mass_ * body_.gravity.transpose();
+  if (forces_.rows() > 0) out -= forces_;
+  if (prediction_.rows() > 0) out += (mass_ / (time_step_ * time_step_)).asDiagonal() * (x - prediction_);
   if (magnitude != nullptr) *magnitude = out.rowwise().norm();
   for (Eigen::Index t = 0; t < body_.tets.rows(); ++t)
     for (int k = 0; k < 4; ++k) {
@@ -198,19 +246,28 @@ SparseMatrixd TissueEnergy::hessian(const MatrixX3d& x, const FreeMotion& motion
       grain);
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(blocks.size() * 144);
+  const auto add_block = [&](int a, int b, const Matrix3d& block) {
+    const int row = motion.first(a), column = motion.first(b);
+    if (row < 0 || column < 0) return;
+    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> reduced =
+        motion.directions(a).transpose() * block * motion.directions(b);
+    for (Eigen::Index i = 0; i < reduced.rows(); ++i)
+      for (Eigen::Index k = 0; k < reduced.cols(); ++k)
+        entries.emplace_back(row + static_cast<int>(i), column + static_cast<int>(k), reduced(i, k));
+  };
   for (Eigen::Index t = 0; t < body_.tets.rows(); ++t)
     for (int a = 0; a < 4; ++a)
-      for (int b = 0; b < 4; ++b) {
-        const int row = motion.first(body_.tets(t, a)), column = motion.first(body_.tets(t, b));
-        if (row < 0 || column < 0) continue;
-        const auto& rows = motion.directions(body_.tets(t, a));
-        const auto& columns = motion.directions(body_.tets(t, b));
-        const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> block =
-            rows.transpose() * blocks[static_cast<std::size_t>(t)].block<3, 3>(3 * a, 3 * b) * columns;
-        for (Eigen::Index i = 0; i < block.rows(); ++i)
-          for (Eigen::Index k = 0; k < block.cols(); ++k)
-            entries.emplace_back(row + static_cast<int>(i), column + static_cast<int>(k), block(i, k));
-      }
+      for (int b = 0; b < 4; ++b)
+        add_block(body_.tets(t, a), body_.tets(t, b), blocks[static_cast<std::size_t>(t)].block<3, 3>(3 * a, 3 * b));
+  if (prediction_.rows() > 0)
+    for (int v = 0; v < mass_.size(); ++v) add_block(v, v, mass_[v] / (time_step_ * time_step_) * Matrix3d::Identity());
+  if (kind == Stiffness::exact && !body_.slides.empty()) {
+    const MatrixX3d g = gradient(x);
+    for (const Slide& slide : body_.slides) {
+      const Vector3d n = slide.gradient(x.row(slide.vertex));
+      add_block(slide.vertex, slide.vertex, g.row(slide.vertex).dot(n) / n.squaredNorm() * slide.bend);
+    }
+  }
   SparseMatrixd H(motion.size(), motion.size());
   H.setFromTriplets(entries.begin(), entries.end());
   return H;

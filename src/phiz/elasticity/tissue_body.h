@@ -12,11 +12,17 @@ namespace phiz {
 
 enum class PassiveLaw { corotated, neo_hookean };
 
-/// Holds a vertex to the plane through `point` with unit normal; a vertex may have several.
+/// Holds a vertex to a surface near `point`: n . d - d . B d / 2 = 0 with d = x - point. A plane with unit normal n, or
+/// a paraboloid that touches it, so that the tangent plane turns as the vertex slides. A vertex may have several.
 struct Slide {
   int vertex = -1;
   Vector3d point = Vector3d::Zero();
   Vector3d normal = Vector3d::UnitZ();
+  Matrix3d bend = Matrix3d::Zero();  ///< B, symmetric, B n = 0, 1/metre: curvature, positive towards n
+
+  /// How far x is above the surface (to first order), metres, and the gradient of that.
+  double height(const Vector3d& x) const { return normal.dot(x - point) - 0.5 * (x - point).dot(bend * (x - point)); }
+  Vector3d gradient(const Vector3d& x) const { return normal - bend * (x - point); }
 };
 
 struct TissueBody {
@@ -26,6 +32,7 @@ struct TissueBody {
   VectorXd active;                      ///< m: share of muscle in the tet's volume, 0 to 1; empty for none
   VectorXd growth;                      ///< m: plastic stretch s in every direction, > 0 (1: none); empty for none
   VectorXd density;                     ///< m, kg/m^3; empty for no weight
+  VectorXd added_mass;                  ///< n, kg that vertices carry beside; empty for none
   Vector3d gravity = Vector3d::Zero();  ///< m/s^2
   PassiveLaw passive = PassiveLaw::corotated;
   std::vector<char> pinned;  ///< n: position prescribed
@@ -36,11 +43,14 @@ struct TissueBody {
 /// are not positive.
 void validate(const TissueBody& body);
 
-/// Which way the vertices may move: freely, in a plane, along a line, or not at all. The unknowns are coordinates in
-/// these spaces.
+/// Puts the sliding vertices that are not pinned on their surfaces.
+void put_on_slides(const TissueBody& body, MatrixX3d& x);
+
+/// Which way the vertices may move from x: freely, in a tangent plane, along a line, or not at all. The unknowns are
+/// coordinates in these spaces.
 class FreeMotion {
  public:
-  explicit FreeMotion(const TissueBody& body);
+  FreeMotion(const TissueBody& body, const MatrixX3d& x);
 
   Eigen::Index size() const { return size_; }
   /// First unknown of a vertex, and the directions (3 x k, orthonormal) of its k unknowns.
@@ -67,13 +77,21 @@ class TissueEnergy {
   const TissueBody& body() const { return body_; }
   /// The stretch that the muscle in each tet strives for (m; I: relaxed).
   void set_activation(const std::vector<Matrix3d>& stretches);
+  /// Other places of the slides, in the order of the body's.
+  void set_slides(const std::vector<Slide>& slides);
+  /// A force on every vertex that does not depend on x, newtons, n x 3; an empty matrix for none.
+  void set_forces(const MatrixX3d& forces);
+  /// A step of backward Euler (phace.md section 7.1): adds sum of mass |x - prediction|^2 / (2 h^2), prediction = x + h
+  /// v of the step before. An empty prediction: statics.
+  void set_inertia(double time_step, const MatrixX3d& prediction);
 
-  /// E_pass + E_act + E_grav (eq. 6.3), joules; the same bits for any thread count.
+  /// E_pass + E_act + E_grav (eq. 6.3), the work of the forces and inertia, joules; the same bits for any thread count.
   double value(const MatrixX3d& x) const;
   /// Its gradient, n x 3; at pinned vertices it is the reaction. `magnitude`, if not null, gets per vertex the sum of
   /// the norms of what the tets contribute: the scale that a residual is relative to.
   MatrixX3d gradient(const MatrixX3d& x, VectorXd* magnitude = nullptr) const;
-  /// Its Hessian in the unknowns of `motion`; the pattern does not depend on x.
+  /// Its Hessian in the unknowns of `motion`, the exact one with what the curvature of the slides adds to it under
+  /// their reactions; the pattern does not depend on x.
   SparseMatrixd hessian(const MatrixX3d& x, const FreeMotion& motion, Stiffness kind) const;
   /// Kilograms per vertex, lumped.
   const VectorXd& mass() const { return mass_; }
@@ -92,6 +110,9 @@ class TissueEnergy {
   TetRest rest_;  ///< of the grown tets; volumes before growth
   std::vector<Matrix3d> stretches_;
   VectorXd mass_;
+  MatrixX3d forces_;      ///< or empty
+  MatrixX3d prediction_;  ///< or empty
+  double time_step_ = 0;
 };
 
 }  // namespace phiz

@@ -17,12 +17,12 @@ namespace {
 /// makes it so.
 class NewtonStep {
  public:
-  NewtonStep(const TissueEnergy& energy, const FreeMotion& motion) : energy_(energy), motion_(motion) {}
+  explicit NewtonStep(const TissueEnergy& energy) : energy_(energy) {}
 
-  VectorXd operator()(const MatrixX3d& x, const VectorXd& gradient) {
+  VectorXd operator()(const MatrixX3d& x, const FreeMotion& motion, const VectorXd& gradient) {
     constexpr double least_shift = 1e-12, first_shift = 1e-8, most_shift = 1e4;
     for (const Stiffness kind : {Stiffness::exact, Stiffness::projected}) {
-      const SparseMatrixd H = energy_.hessian(x, motion_, kind);
+      const SparseMatrixd H = energy_.hessian(x, motion, kind);
       const double scale = H.diagonal().cwiseAbs().mean();
       double shift = least_shift;
       while (shift <= (kind == Stiffness::exact ? least_shift : most_shift)) {
@@ -51,19 +51,8 @@ class NewtonStep {
   }
 
   const TissueEnergy& energy_;
-  const FreeMotion& motion_;
   std::optional<SparseCholesky> factor_;
 };
-
-/// A vertex with several slides is put on all of its planes by going to each in turn; orthogonal ones need one round.
-void put_on_planes(const TissueBody& body, MatrixX3d& x) {
-  constexpr int rounds = 50;
-  for (int round = 0; round < rounds; ++round)
-    for (const Slide& slide : body.slides)
-      if (body.pinned[static_cast<std::size_t>(slide.vertex)] == 0)
-        x.row(slide.vertex) -=
-            slide.normal.dot(x.row(slide.vertex).transpose() - slide.point) * slide.normal.transpose();
-}
 
 }  // namespace
 
@@ -71,12 +60,12 @@ SolveStatistics solve_static(const TissueEnergy& energy, MatrixX3d& x, const New
   const auto start = std::chrono::steady_clock::now();
   if (x.rows() != energy.body().rest.rows() || !x.allFinite())
     reject("static solve", "needs " + std::to_string(energy.body().rest.rows()) + " finite positions");
-  const FreeMotion motion(energy.body());
-  NewtonStep step(energy, motion);
-  put_on_planes(energy.body(), x);
+  NewtonStep step(energy);
+  put_on_slides(energy.body(), x);
   SolveStatistics statistics;
   double value = energy.value(x);
   for (;;) {
+    const FreeMotion motion(energy.body(), x);
     VectorXd magnitude;
     const VectorXd g = motion.reduced(energy.gradient(x, &magnitude));
     double scale2 = 0;
@@ -86,13 +75,14 @@ SolveStatistics solve_static(const TissueEnergy& energy, MatrixX3d& x, const New
     statistics.converged = statistics.residual <= options.residual_tolerance;
     if (statistics.converged || statistics.iterations == options.max_iterations) break;
     ++statistics.iterations;
-    const VectorXd p = step(x, g);
+    const VectorXd p = step(x, motion, g);
     const MatrixX3d move = motion.expanded(p);
     const double longest = move.rowwise().norm().maxCoeff();
     double alpha = std::min(1.0, options.longest_step / std::max(longest, 1e-300));
     bool accepted = false;
     for (int halving = 0; halving < 40 && !accepted; ++halving, alpha *= 0.5) {
-      const MatrixX3d trial = x + alpha * move;
+      MatrixX3d trial = x + alpha * move;
+      put_on_slides(energy.body(), trial);
       const double next = energy.value(trial);
       // Near the solution rounding hides the decrease.
       accepted = next <= value + 1e-4 * alpha * g.dot(p) + 1e-14 * std::abs(value);

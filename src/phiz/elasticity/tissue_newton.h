@@ -17,7 +17,7 @@ struct NewtonStaticOptions {
   double longest_step = 0.01;  ///< no vertex moves farther in one iteration, metres
 };
 
-/// Minimises the energy from and to x; pinned vertices stay where x has them, sliding ones are put on their planes
+/// Minimises the energy from and to x; pinned vertices stay where x has them, sliding ones are put on their surfaces
 /// first. On failure (statistics.converged = false) x is the best state reached, never NaN.
 SolveStatistics solve_static(const TissueEnergy& energy, MatrixX3d& x, const NewtonStaticOptions& options = {});
 
