@@ -8,6 +8,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "phiz/elasticity/tet_lanes-inl.h"
 #include "phiz/numerics/polar3-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -15,31 +16,6 @@ namespace phiz {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-
-/// B = A S for a symmetric S: xx, yy, zz, xy, xz, yz.
-template <class V>
-HWY_INLINE void TimesStretch(const V* A, const V* S, V* B) {
-  constexpr int at[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
-  for (int j = 0; j < 3; ++j)
-    for (int i = 0; i < 3; ++i)
-      B[3 * j + i] = hn::MulAdd(A[6 + i], S[at[2][j]], hn::MulAdd(A[3 + i], S[at[1][j]], hn::Mul(A[i], S[at[0][j]])));
-}
-
-/// Edges from corner 0 to the others (columns) for the lanes from slot `first` on.
-template <class D, class T, class V = hn::Vec<D>>
-HWY_INLINE void Edges(D d, const ElementBlocks<T>& e, const double* x, std::ptrdiff_t first, V* E) {
-  HWY_ALIGN T rows[3][4 * ElementBlocks<T>::width];
-  const std::int32_t* vertex = e.vertex.get() + 4 * first;
-  for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane, vertex += 4) {
-    const double* origin = x + 4 * static_cast<std::ptrdiff_t>(vertex[0]);
-    for (int c = 0; c < 3; ++c) {
-      const double* corner = x + 4 * static_cast<std::ptrdiff_t>(vertex[c + 1]);
-      for (std::size_t k = 0; k < 4; ++k) rows[c][4 * lane + k] = static_cast<T>(corner[k] - origin[k]);
-    }
-  }
-  V unused;
-  for (int c = 0; c < 3; ++c) hn::LoadInterleaved4(d, rows[c], E[3 * c], E[3 * c + 1], E[3 * c + 2], unused);
-}
 
 template <class T>
 double EvaluateElements(const ElementBlocks<T>& e, const TermWeights& w, const double* x, T* gradient,
@@ -56,7 +32,7 @@ double EvaluateElements(const ElementBlocks<T>& e, const TermWeights& w, const d
       const std::ptrdiff_t slot = b * Blocks::width + static_cast<std::ptrdiff_t>(l);
       V D9[9], E[9], F[9], P[9], Q[9];
       for (int k = 0; k < 9; ++k) D9[k] = hn::Load(d, e.inverse.get() + Blocks::at(slot, 9, k));
-      Edges(d, e, x, slot, E);
+      Edges(d, e.vertex.get() + 4 * slot, x, E);
       Multiply3(E, D9, F);
       V sum = hn::Zero(d);
 
@@ -96,19 +72,9 @@ double EvaluateElements(const ElementBlocks<T>& e, const TermWeights& w, const d
       const V weight = hn::Load(d, e.weight.get() + slot);
       energy = hn::MulAdd(weight, sum, energy);
 
-      // Corner c > 0 gets 2 w P D^-T e_c; corner 0 minus their sum.
       const V twice = hn::Add(weight, weight);
-      V first[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-      for (int c = 1; c < 4; ++c) {
-        V g[3];
-        for (int i = 0; i < 3; ++i) {
-          g[i] = hn::Mul(twice, hn::MulAdd(P[6 + i], D9[6 + c - 1],
-                                           hn::MulAdd(P[3 + i], D9[3 + c - 1], hn::Mul(P[i], D9[c - 1]))));
-          first[i] = hn::Sub(first[i], g[i]);
-        }
-        hn::StoreInterleaved4(g[0], g[1], g[2], hn::Zero(d), d, gradient + 4 * Blocks::at(slot, 4, c));
-      }
-      hn::StoreInterleaved4(first[0], first[1], first[2], hn::Zero(d), d, gradient + 4 * Blocks::at(slot, 4, 0));
+      for (V& p : P) p = hn::Mul(twice, p);
+      StoreCornerForces(d, P, D9, 4 * width, gradient + 4 * Blocks::at(slot, 4, 0));
     }
   }
   HWY_ALIGN T parts[width];

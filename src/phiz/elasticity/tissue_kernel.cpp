@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#undef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_RVV)  // the kernel keeps vectors in arrays
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "phiz/elasticity/tissue_kernel.cpp"
+#include "phiz/elasticity/tissue_kernel.h"
+
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "phiz/elasticity/tet_lanes-inl.h"
+#include "phiz/numerics/polar3-inl.h"
+
+// clang-format off: it wants to be last
+#include <hwy/contrib/math/math-inl.h>
+// clang-format on
+
+HWY_BEFORE_NAMESPACE();
+namespace phiz {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<double, 8>;
+using V = hn::Vec<D>;
+using Blocks = TissueBlocks;
+
+HWY_INLINE V Number(double value) {
+  return hn::Set(D(), value);
+}
+
+HWY_INLINE void Load(const Blocks::Array& array, std::ptrdiff_t slot, int entries, V* out) {
+  for (int k = 0; k < entries; ++k) out[k] = hn::Load(D(), array.get() + Blocks::at(slot, entries, k));
+}
+
+/// Determinant of a symmetric matrix: xx, yy, zz, xy, xz, yz.
+HWY_INLINE V SymmetricDeterminant(const V* S) {
+  const V a = hn::MulSub(S[1], S[2], hn::Mul(S[5], S[5]));
+  const V b = hn::MulSub(S[3], S[2], hn::Mul(S[5], S[4]));
+  const V c = hn::MulSub(S[3], S[5], hn::Mul(S[1], S[4]));
+  return hn::MulAdd(S[4], c, hn::NegMulAdd(S[3], b, hn::Mul(S[0], a)));
+}
+
+/// What all laws need of the tets from `slot` on.
+struct State {
+  V D9[9], F[9], C[9], J, volume, mu, lambda, active;
+
+  HWY_INLINE State(const Blocks& e, const double* x, std::ptrdiff_t slot) {
+    V E[9];
+    Load(e.inverse, slot, 9, D9);
+    Edges(D(), e.vertex.get() + 4 * slot, x, E);
+    Multiply3(E, D9, F);
+    Cofactor3(D(), F, C);
+    J = Dot3(F, C);
+    Load(e.volume, slot, 1, &volume);
+    Load(e.mu, slot, 1, &mu);
+    Load(e.lambda, slot, 1, &lambda);
+    Load(e.active, slot, 1, &active);
+  }
+};
+
+/// Adds weight (mu |F - R S|^2 + lambda (J - J_S)^2) and its derivative.
+HWY_INLINE void AddCorotated(const State& s, V weight, const V* RS, V goal, V& energy, V* P) {
+  const V mu = hn::Mul(weight, s.mu), lambda = hn::Mul(weight, s.lambda), excess = hn::Sub(s.J, goal);
+  const V twice_mu = hn::Add(mu, mu), pressure = hn::Mul(hn::Add(lambda, lambda), excess);
+  V sum = hn::Zero(D());
+  for (int k = 0; k < 9; ++k) {
+    const V delta = hn::Sub(s.F[k], RS[k]);
+    sum = hn::MulAdd(delta, delta, sum);
+    P[k] = hn::MulAdd(twice_mu, delta, hn::MulAdd(pressure, s.C[k], P[k]));
+  }
+  energy = hn::MulAdd(mu, sum, hn::MulAdd(lambda, hn::Mul(excess, excess), energy));
+}
+
+/// The constants of constitutive.cpp.
+struct NeoHookean {
+  V mu, lambda, alpha;
+  HWY_INLINE explicit NeoHookean(const State& s) {
+    mu = hn::Mul(Number(4.0 / 3), s.mu);
+    lambda = hn::MulAdd(Number(2), s.lambda, hn::Mul(Number(5.0 / 6), s.mu));
+    alpha = hn::MulAdd(Number(0.75), hn::Div(mu, lambda), Number(1));
+  }
+};
+
+HWY_INLINE void AddNeoHookean(const State& s, V weight, V& energy, V* P) {
+  const NeoHookean n(s);
+  const V I = Dot9(s.F, s.F), excess = hn::Sub(s.J, n.alpha), at_rest = hn::Sub(Number(1), n.alpha);
+  const V mu = hn::Mul(weight, n.mu), lambda = hn::Mul(weight, n.lambda);
+  const V stretch = hn::Sub(hn::Sub(I, Number(3)), hn::Log(D(), hn::Mul(Number(0.25), hn::Add(I, Number(1)))));
+  const V volume = hn::MulSub(excess, excess, hn::Mul(at_rest, at_rest));
+  energy = hn::MulAdd(Number(0.5), hn::MulAdd(mu, stretch, hn::Mul(lambda, volume)), energy);
+  const V shear = hn::Mul(mu, hn::Div(I, hn::Add(I, Number(1)))), pressure = hn::Mul(lambda, excess);
+  for (int k = 0; k < 9; ++k) P[k] = hn::MulAdd(shear, s.F[k], hn::MulAdd(pressure, s.C[k], P[k]));
+}
+
+double EvaluateTissue(const Blocks& e, const double* x, double* gradient, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  constexpr D d;
+  V energy = hn::Zero(d);
+  for (std::ptrdiff_t b = begin; b < end; ++b)
+    for (std::size_t l = 0; l < Blocks::width; l += hn::Lanes(d)) {
+      const std::ptrdiff_t slot = b * Blocks::width + static_cast<std::ptrdiff_t>(l);
+      const State s(e, x, slot);
+      V P[9], R[9], sum = hn::Zero(d);
+      for (V& p : P) p = hn::Zero(d);
+      const V passive = hn::Sub(Number(1), s.active);
+      if (e.passive == PassiveLaw::corotated) {
+        ClosestRotation3(d, s.F, R);
+        AddCorotated(s, passive, R, Number(1), sum, P);
+      } else {
+        AddNeoHookean(s, passive, sum, P);
+      }
+      if (b < e.muscle_blocks) {
+        V S[6], G[9], RS[9];
+        Load(e.stretch, slot, 6, S);
+        TimesStretch(s.F, S, G);
+        ClosestRotation3(d, G, R);
+        TimesStretch(R, S, RS);
+        AddCorotated(s, s.active, RS, SymmetricDeterminant(S), sum, P);
+      }
+      energy = hn::MulAdd(s.volume, sum, energy);
+      for (V& p : P) p = hn::Mul(s.volume, p);
+      StoreCornerForces(d, P, s.D9, 4 * Blocks::width, gradient + 4 * Blocks::at(slot, 4, 0));
+    }
+  HWY_ALIGN double parts[Blocks::width];
+  hn::Store(energy, d, parts);
+  double total = 0;
+  for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) total += parts[lane];
+  return total;
+}
+
+/// Hat gradients of the four corners, three each.
+HWY_INLINE void HatGradients(const V* D9, V h[4][3]) {
+  for (int k = 0; k < 3; ++k) {
+    h[0][k] = hn::Zero(D());
+    for (int c = 1; c < 4; ++c) {
+      h[c][k] = D9[3 * k + c - 1];
+      h[0][k] = hn::Sub(h[0][k], h[c][k]);
+    }
+  }
+}
+
+HWY_INLINE void Times(const V* A, const V* v, V* out) {
+  for (int i = 0; i < 3; ++i) out[i] = hn::MulAdd(A[6 + i], v[2], hn::MulAdd(A[3 + i], v[1], hn::Mul(A[i], v[0])));
+}
+
+HWY_INLINE void Cross(const V* a, const V* b, V* out) {
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    out[i] = hn::MulSub(a[j], b[k], hn::Mul(a[k], b[j]));
+  }
+}
+
+/// Adds the second derivative of weight min_R |F - R S|^2: for corners with hat gradients g, h in F and S g, S h in F S
+/// it is 2 (g . h) I - 2 A^T M B with the twists A = [S g] R^T, B = [S h] R^T and M = (tr Y I - Y)^-1, Y = R^T F S.
+template <bool muscle>
+HWY_INLINE void AddShape(const State& s, V weight, const V* S, const V h[4][3], V K[10][9]) {
+  constexpr D d;
+  V G[9], R[9], Y[9], N[9], M[9];
+  if (muscle)
+    TimesStretch(s.F, S, G);
+  else
+    for (int k = 0; k < 9; ++k) G[k] = s.F[k];
+  ClosestRotation3(d, G, R);
+  TransposeMultiply3(R, G, Y);
+  const V half = Number(0.5);
+  const V y01 = hn::Mul(half, hn::Add(Y[1], Y[3])), y02 = hn::Mul(half, hn::Add(Y[2], Y[6])),
+          y12 = hn::Mul(half, hn::Add(Y[5], Y[7]));
+  N[0] = hn::Add(Y[4], Y[8]);
+  N[4] = hn::Add(Y[0], Y[8]);
+  N[8] = hn::Add(Y[0], Y[4]);
+  N[1] = N[3] = hn::Neg(y01);
+  N[2] = N[6] = hn::Neg(y02);
+  N[5] = N[7] = hn::Neg(y12);
+  Cofactor3(d, N, M);
+  // Where F S is collapsed the rotation turns without effort and the term has no second derivative.
+  const V det = Dot3(N, M), trace = hn::Add(N[0], hn::Add(N[4], N[8]));
+  const V least = hn::Mul(Number(1e-6), hn::Abs(hn::Mul(trace, hn::Mul(trace, trace))));
+  const auto regular = hn::Gt(det, least);
+  const V inverse = hn::IfThenElseZero(regular, hn::Div(Number(1), hn::IfThenElse(regular, det, Number(1))));
+  for (V& m : M) m = hn::Mul(inverse, m);
+  const V factor = hn::Mul(Number(2), hn::Mul(weight, s.mu));
+  // Twists by rows of 3: column i is (S h) x (row i of R).
+  V A[4][9];
+  for (int c = 0; c < 4; ++c) {
+    V g[3] = {h[c][0], h[c][1], h[c][2]};
+    if (muscle) {
+      g[0] = hn::MulAdd(S[0], h[c][0], hn::MulAdd(S[3], h[c][1], hn::Mul(S[4], h[c][2])));
+      g[1] = hn::MulAdd(S[3], h[c][0], hn::MulAdd(S[1], h[c][1], hn::Mul(S[5], h[c][2])));
+      g[2] = hn::MulAdd(S[4], h[c][0], hn::MulAdd(S[5], h[c][1], hn::Mul(S[2], h[c][2])));
+    }
+    for (int i = 0; i < 3; ++i) {
+      const V r[3] = {R[i], R[3 + i], R[6 + i]};
+      Cross(g, r, A[c] + 3 * i);
+    }
+  }
+  V MB[4][9];
+  for (int c = 0; c < 4; ++c)
+    for (int i = 0; i < 3; ++i) Times(M, A[c] + 3 * i, MB[c] + 3 * i);
+  for (int pair = 0; pair < 10; ++pair) {
+    const int a = corner_pairs[pair][0], b = corner_pairs[pair][1];
+    const V along = hn::Mul(factor, Dot3(h[a], h[b]));
+    for (int k = 0; k < 3; ++k)
+      for (int i = 0; i < 3; ++i) {
+        V& entry = K[pair][3 * k + i];
+        entry = hn::NegMulAdd(factor, Dot3(A[a] + 3 * i, MB[b] + 3 * k), entry);
+        if (i == k) entry = hn::Add(entry, along);
+      }
+  }
+}
+
+/// Adds stiff (C g)(C h)^T + pressure d2J/dF2 per pair of corners.
+HWY_INLINE void AddVolume(const State& s, V stiff, V pressure, const V h[4][3], V K[10][9]) {
+  V c[4][3];
+  for (int corner = 0; corner < 4; ++corner) Times(s.C, h[corner], c[corner]);
+  for (int pair = 0; pair < 10; ++pair) {
+    const int a = corner_pairs[pair][0], b = corner_pairs[pair][1];
+    for (int k = 0; k < 3; ++k) {
+      const V scaled = hn::Mul(stiff, c[b][k]);
+      for (int i = 0; i < 3; ++i) K[pair][3 * k + i] = hn::MulAdd(scaled, c[a][i], K[pair][3 * k + i]);
+    }
+    if (a == b) continue;
+    // u . d2J v = (u x v) . F (g x h).
+    V w[3], f[3];
+    Cross(h[a], h[b], w);
+    Times(s.F, w, f);
+    for (int k = 0; k < 3; ++k) {
+      const int i = (k + 1) % 3, j = (k + 2) % 3;
+      const V value = hn::Mul(pressure, f[k]);
+      K[pair][3 * j + i] = hn::Add(K[pair][3 * j + i], value);
+      K[pair][3 * i + j] = hn::Sub(K[pair][3 * i + j], value);
+    }
+  }
+}
+
+HWY_INLINE void AddNeoHookeanStiffness(const State& s, V weight, const V h[4][3], V K[10][9]) {
+  const NeoHookean n(s);
+  const V I = hn::Add(Dot9(s.F, s.F), Number(1)), mu = hn::Mul(weight, n.mu), lambda = hn::Mul(weight, n.lambda);
+  const V inverse = hn::Div(Number(1), I);
+  const V shear = hn::NegMulAdd(mu, inverse, mu), growth = hn::Mul(Number(2), hn::Mul(mu, hn::Mul(inverse, inverse)));
+  V f[4][3];
+  for (int corner = 0; corner < 4; ++corner) Times(s.F, h[corner], f[corner]);
+  for (int pair = 0; pair < 10; ++pair) {
+    const int a = corner_pairs[pair][0], b = corner_pairs[pair][1];
+    const V along = hn::Mul(shear, Dot3(h[a], h[b]));
+    for (int k = 0; k < 3; ++k) {
+      const V scaled = hn::Mul(growth, f[b][k]);
+      for (int i = 0; i < 3; ++i) {
+        V& entry = K[pair][3 * k + i];
+        entry = hn::MulAdd(scaled, f[a][i], entry);
+        if (i == k) entry = hn::Add(entry, along);
+      }
+    }
+  }
+  AddVolume(s, lambda, hn::Mul(lambda, hn::Sub(s.J, n.alpha)), h, K);
+}
+
+void TissueStiffness(const Blocks& e, const double* x, float* stiffness, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  constexpr D d;
+  constexpr std::size_t entries = 90;
+  for (std::ptrdiff_t b = begin; b < end; ++b)
+    for (std::size_t l = 0; l < Blocks::width; l += hn::Lanes(d)) {
+      const std::ptrdiff_t slot = b * Blocks::width + static_cast<std::ptrdiff_t>(l);
+      const State s(e, x, slot);
+      V h[4][3], K[10][9];
+      HatGradients(s.D9, h);
+      for (auto& block : K)
+        for (V& entry : block) entry = hn::Zero(d);
+      const V passive = hn::Sub(Number(1), s.active);
+      V volume_weight = s.active, goal = s.active;  // sum of weights, and of weights times volume goals
+      if (e.passive == PassiveLaw::corotated) {
+        AddShape<false>(s, passive, nullptr, h, K);
+        volume_weight = Number(1);
+        goal = Number(1);
+      } else {
+        AddNeoHookeanStiffness(s, passive, h, K);
+      }
+      if (b < e.muscle_blocks) {
+        V S[6];
+        Load(e.stretch, slot, 6, S);
+        AddShape<true>(s, s.active, S, h, K);
+        goal = hn::MulAdd(s.active, hn::Sub(SymmetricDeterminant(S), Number(1)), goal);
+      }
+      const V twice = hn::Add(s.lambda, s.lambda);
+      AddVolume(s, hn::Mul(twice, volume_weight), hn::Mul(twice, hn::MulSub(volume_weight, s.J, goal)), h, K);
+      HWY_ALIGN double lanes[entries * Blocks::width];
+      for (int pair = 0; pair < 10; ++pair)
+        for (int k = 0; k < 9; ++k)
+          hn::Store(hn::Mul(s.volume, K[pair][k]), d, lanes + static_cast<std::size_t>(9 * pair + k) * Blocks::width);
+      float* out = stiffness + slot * static_cast<std::ptrdiff_t>(entries);
+      for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane, out += entries)
+        for (std::size_t k = 0; k < entries; ++k) out[k] = static_cast<float>(lanes[k * Blocks::width + lane]);
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace phiz
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include <algorithm>
+#include <vector>
+
+namespace phiz {
+
+HWY_EXPORT(EvaluateTissue);
+HWY_EXPORT(TissueStiffness);
+
+TissueBlocks::TissueBlocks(const TissueBody& body, const VectorXi& row_of)
+    : tets(body.tets.rows()), passive(body.passive), slot_of(body.tets.rows()) {
+  std::vector<Eigen::Index> order, rest;
+  for (Eigen::Index t = 0; t < tets; ++t) (body.active.size() > 0 && body.active[t] > 0 ? order : rest).push_back(t);
+  const auto fill = [](std::vector<Eigen::Index>& list) {
+    while (list.size() % width != 0) list.push_back(-1 - list.front());
+  };
+  fill(order);
+  muscle_blocks = static_cast<std::ptrdiff_t>(order.size()) / width;
+  fill(rest);
+  order.insert(order.end(), rest.begin(), rest.end());
+  blocks = static_cast<std::ptrdiff_t>(order.size()) / width;
+  const std::size_t count = order.size();
+  for (Array* array : {&volume, &mu, &lambda, &active}) *array = hwy::AllocateAligned<double>(count);
+  inverse = hwy::AllocateAligned<double>(9 * count);
+  stretch = hwy::AllocateAligned<double>(6 * count);
+  vertex = hwy::AllocateAligned<std::int32_t>(4 * count);
+  const TetRest shape = tet_rest(body.rest, body.tets);
+  for (std::size_t s = 0; s < count; ++s) {
+    const auto slot = static_cast<std::ptrdiff_t>(s);
+    const bool copy = order[s] < 0;
+    const Eigen::Index t = copy ? -1 - order[s] : order[s];
+    if (!copy) slot_of[t] = static_cast<int>(slot);
+    const double growth = body.growth.size() > 0 ? body.growth[t] : 1;
+    for (int k = 0; k < 9; ++k)
+      inverse[at(slot, 9, k)] = shape.inverse_edges[static_cast<std::size_t>(t)].data()[k] / growth;
+    volume[s] = copy ? 0 : shape.volume[t];
+    mu[s] = body.moduli[static_cast<std::size_t>(t)].mu;
+    lambda[s] = body.moduli[static_cast<std::size_t>(t)].lambda;
+    active[s] = body.active.size() > 0 ? body.active[t] : 0;
+    for (int k = 0; k < 6; ++k) stretch[at(slot, 6, k)] = k < 3 ? 1 : 0;
+    for (int c = 0; c < 4; ++c) vertex[4 * s + static_cast<std::size_t>(c)] = row_of[body.tets(t, c)];
+  }
+}
+
+void TissueBlocks::set_stretch(std::ptrdiff_t tet, const Matrix3d& S) {
+  const std::ptrdiff_t slot = slot_of[tet];
+  const Vector6d a = activation_of(S);
+  for (int k = 0; k < 6; ++k) stretch[at(slot, 6, k)] = a[k];
+}
+
+double evaluate_tissue(const TissueBlocks& blocks, const double* x, double* gradient, std::ptrdiff_t begin,
+                       std::ptrdiff_t end) {
+  return HWY_DYNAMIC_DISPATCH(EvaluateTissue)(blocks, x, gradient, begin, end);
+}
+
+void tissue_stiffness(const TissueBlocks& blocks, const double* x, float* stiffness, std::ptrdiff_t begin,
+                      std::ptrdiff_t end) {
+  HWY_DYNAMIC_DISPATCH(TissueStiffness)(blocks, x, stiffness, begin, end);
+}
+
+}  // namespace phiz
+#endif

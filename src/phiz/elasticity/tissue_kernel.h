@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Energy, forces and stiffness of muscle and passive tissue (constitutive.h) for blocks of tets held as structure of
+/// arrays, in double precision, with Highway and run-time dispatch.
+#pragma once
+
+#include <hwy/aligned_allocator.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "phiz/elasticity/tissue_body.h"
+
+namespace phiz {
+
+/// Tets in blocks of 8; those with muscle come first. The last block of either kind is filled with copies of no volume.
+/// Tet `slot` is lane slot % 8 of block slot / 8. Matrices are column-major.
+struct TissueBlocks {
+  static constexpr std::ptrdiff_t width = 8;
+  using Array = hwy::AlignedFreeUniquePtr<double[]>;
+
+  /// Where entry k of a tet is, in an array with `entries` values per tet.
+  static constexpr std::size_t at(std::ptrdiff_t slot, std::ptrdiff_t entries, std::ptrdiff_t k) {
+    return static_cast<std::size_t>((slot / width * entries + k) * width + slot % width);
+  }
+
+  TissueBlocks() = default;
+  /// `row_of`: row of x of each vertex of the body.
+  TissueBlocks(const TissueBody& body, const VectorXi& row_of);
+
+  std::ptrdiff_t tets = 0;
+  std::ptrdiff_t muscle_blocks = 0, blocks = 0;
+  PassiveLaw passive = PassiveLaw::corotated;
+  VectorXi slot_of;                                  ///< of each tet
+  Array inverse;                                     ///< inverse of the grown rest edge matrix, 9
+  Array volume;                                      ///< rest volume, 1
+  Array mu, lambda;                                  ///< pascals, 1 each
+  Array active;                                      ///< share of muscle, 1
+  Array stretch;                                     ///< what muscle strives for: xx, yy, zz, xy, xz, yz
+  hwy::AlignedFreeUniquePtr<std::int32_t[]> vertex;  ///< four rows of x per slot, one after the other
+
+  void set_stretch(std::ptrdiff_t tet, const Matrix3d& S);
+};
+
+/// Evaluates blocks [begin, end). `x`: four doubles per row. `gradient`: derivative of the energy by corner c of a
+/// slot, four values from 4 * TissueBlocks::at(slot, 4, c) on. Returns the energy, joules.
+double evaluate_tissue(const TissueBlocks& blocks, const double* x, double* gradient, std::ptrdiff_t begin,
+                       std::ptrdiff_t end);
+
+/// Pairs of corners of a tet, in the order of their blocks in a stiffness.
+constexpr int corner_pairs[10][2] = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {1, 0}, {2, 0}, {3, 0}, {2, 1}, {3, 1}, {3, 2}};
+
+/// The exact Hessian of blocks [begin, end): per slot ten 3x3 blocks one after the other, column-major: entry (i, k) of
+/// pair (a, b) is the second derivative by coordinate i of corner a and k of corner b.
+void tissue_stiffness(const TissueBlocks& blocks, const double* x, float* stiffness, std::ptrdiff_t begin,
+                      std::ptrdiff_t end);
+
+}  // namespace phiz

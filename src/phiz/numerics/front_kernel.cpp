@@ -1,0 +1,405 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#undef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_RVV)  // the kernel keeps vectors in arrays
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "phiz/numerics/front_kernel.cpp"
+#include "phiz/numerics/front_kernel.h"
+
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+
+HWY_BEFORE_NAMESPACE();
+namespace phiz {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<float, 16>;
+using V = hn::Vec<D>;
+constexpr std::ptrdiff_t lanes = static_cast<std::ptrdiff_t>(hn::MaxLanes(D()));
+constexpr std::ptrdiff_t group = front_group;
+constexpr int vectors = static_cast<int>(group / lanes);  // of a group
+// Tiles that fill the registers: columns, and groups of rows.
+constexpr int widest = lanes == 16 ? 8 : lanes == 8 ? 4 : 2;
+constexpr int highest = lanes == 16 ? 3 : 1;
+
+/// Columns [0, W) of G groups of rows: F less the product of the first k finished columns of these rows, A, and of the
+/// rows that belong to the columns, B. `stride`: floats from group to group of A.
+template <int G, int W>
+struct Tile {
+  V x[G * vectors][W];
+
+  HWY_INLINE void Load(const float* F, std::ptrdiff_t ld) {
+    for (int c = 0; c < W; ++c)
+      for (int v = 0; v < G * vectors; ++v) x[v][c] = hn::LoadU(D(), F + c * ld + v * lanes);
+  }
+  HWY_INLINE void Subtract(const float* A, std::ptrdiff_t stride, const float* B, std::ptrdiff_t k) {
+    for (std::ptrdiff_t i = 0; i < k; ++i) {
+      V a[G * vectors];
+      for (int g = 0; g < G; ++g)
+        for (int v = 0; v < vectors; ++v) a[g * vectors + v] = hn::LoadU(D(), A + g * stride + i * group + v * lanes);
+      for (int c = 0; c < W; ++c) {
+        const V b = hn::Set(D(), B[i * group + c]);
+        for (int v = 0; v < G * vectors; ++v) x[v][c] = hn::NegMulAdd(a[v], b, x[v][c]);
+      }
+    }
+  }
+  /// By the transpose of the triangle of the columns, whose first one is at B.
+  HWY_INLINE void SolveTriangle(const float* B, const float* inverse_diagonal) {
+    for (int c = 0; c < W; ++c) {
+      for (int q = 0; q < c; ++q) {
+        const V b = hn::Set(D(), B[q * group + c]);
+        for (int v = 0; v < G * vectors; ++v) x[v][c] = hn::NegMulAdd(x[v][q], b, x[v][c]);
+      }
+      const V inverse = hn::Set(D(), inverse_diagonal[c]);
+      for (int v = 0; v < G * vectors; ++v) x[v][c] = hn::Mul(x[v][c], inverse);
+    }
+  }
+  HWY_INLINE void StoreGroups(float* A, std::ptrdiff_t stride) const {
+    for (int g = 0; g < G; ++g)
+      for (int c = 0; c < W; ++c)
+        for (int v = 0; v < vectors; ++v)
+          hn::StoreU(x[g * vectors + v][c], D(), A + g * stride + c * group + v * lanes);
+  }
+  HWY_INLINE void Store(float* F, std::ptrdiff_t ld) const {
+    for (int c = 0; c < W; ++c)
+      for (int v = 0; v < G * vectors; ++v) hn::StoreU(x[v][c], D(), F + c * ld + v * lanes);
+  }
+};
+
+/// Finishes the columns [j, j + W) in G groups of rows from A on.
+template <int G, int W>
+HWY_INLINE void FinishGroups(const Front& f, const float* F, std::ptrdiff_t ld, std::ptrdiff_t j, float* A) {
+  const std::ptrdiff_t stride = f.p * group;
+  const float* B = f.L1 + j / group * stride + j % group;
+  Tile<G, W> tile;
+  tile.Load(F + j * ld, ld);
+  tile.Subtract(A, stride, B, j);
+  tile.SolveTriangle(B + j * group, f.inverse_diagonal + j);
+  tile.StoreGroups(A + j * group, stride);
+}
+
+/// Finishes the columns [j, j + W) in `groups` groups of rows.
+template <int W>
+HWY_INLINE void FinishStrip(const Front& f, const float* F, std::ptrdiff_t ld, std::ptrdiff_t j, float* A,
+                            std::ptrdiff_t groups) {
+  const std::ptrdiff_t stride = f.p * group;
+  std::ptrdiff_t g = 0;
+  for (; g + highest <= groups; g += highest) FinishGroups<highest, W>(f, F + g * group, ld, j, A + g * stride);
+  for (; g < groups; ++g) FinishGroups<1, W>(f, F + g * group, ld, j, A + g * stride);
+}
+
+/// The group of rows that holds the diagonal of the columns [j, j + W).
+template <int W>
+bool FinishDiagonal(const Front& f, const float* F, std::ptrdiff_t ld, std::ptrdiff_t j) {
+  const std::ptrdiff_t stride = f.p * group, g = j / group, first = j % group;
+  float* A = f.L1 + g * stride;
+  HWY_ALIGN float x[W * group];
+  Tile<1, W> tile;
+  tile.Load(F + j * ld + g * group, ld);
+  tile.Subtract(A, stride, A + first, j);
+  tile.Store(x, group);
+  constexpr float rounding = 1e-6F;
+  for (int c = 0; c < W; ++c) {
+    const std::ptrdiff_t row = first + c;
+    float* column = x + c * group;
+    for (int q = 0; q < c; ++q) {
+      const float b = x[q * group + row];
+      for (std::ptrdiff_t i = row; i < group; ++i) column[i] -= x[q * group + i] * b;
+    }
+    const float pivot = column[row];
+    if (!(pivot > rounding * std::abs(F[(j + c) * ld + g * group + row])) || !std::isfinite(pivot)) return false;
+    const float inverse = 1 / std::sqrt(pivot);
+    f.inverse_diagonal[j + c] = inverse;
+    for (std::ptrdiff_t i = 0; i <= row; ++i) column[i] = 0;
+    for (std::ptrdiff_t i = row + 1; i < group; ++i) column[i] *= inverse;
+  }
+  std::copy_n(x, W * group, A + j * group);
+  return true;
+}
+
+template <int W>
+HWY_INLINE bool FinishOwnStrip(const Front& f, const float* F, std::ptrdiff_t ld, std::ptrdiff_t j) {
+  if (!FinishDiagonal<W>(f, F, ld, j)) return false;
+  const std::ptrdiff_t next = j / group + 1;
+  FinishStrip<W>(f, F + next * group, ld, j, f.L1 + next * f.p * group, whole_groups(f.p) / group - next);
+  return true;
+}
+
+bool FactorOwn(const Front& f, const float* F, std::ptrdiff_t ld) {
+  std::ptrdiff_t j = 0;
+  for (; j + widest <= f.p; j += widest)
+    if (!FinishOwnStrip<widest>(f, F, ld, j)) return false;
+  if constexpr (widest >= 8)
+    for (; j + 4 <= f.p; j += 4)
+      if (!FinishOwnStrip<4>(f, F, ld, j)) return false;
+  if constexpr (widest >= 4)
+    for (; j + 2 <= f.p; j += 2)
+      if (!FinishOwnStrip<2>(f, F, ld, j)) return false;
+  for (; j < f.p; ++j)
+    if (!FinishOwnStrip<1>(f, F, ld, j)) return false;
+  return true;
+}
+
+/// All columns of G groups of rows.
+template <int G>
+HWY_INLINE void FinishRows(const Front& f, const float* F, std::ptrdiff_t ld, float* A) {
+  std::ptrdiff_t j = 0;
+  for (; j + widest <= f.p; j += widest) FinishGroups<G, widest>(f, F, ld, j, A);
+  if constexpr (widest >= 8)
+    for (; j + 4 <= f.p; j += 4) FinishGroups<G, 4>(f, F, ld, j, A);
+  if constexpr (widest >= 4)
+    for (; j + 2 <= f.p; j += 2) FinishGroups<G, 2>(f, F, ld, j, A);
+  for (; j < f.p; ++j) FinishGroups<G, 1>(f, F, ld, j, A);
+}
+
+void FactorBelow(const Front& f, const float* F, std::ptrdiff_t ld, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  const float* rows = F + whole_groups(f.p);
+  const std::ptrdiff_t stride = f.p * group;
+  std::ptrdiff_t g = begin;
+  for (; g + highest <= end; g += highest) FinishRows<highest>(f, rows + g * group, ld, f.L2 + g * stride);
+  for (; g < end; ++g) FinishRows<1>(f, rows + g * group, ld, f.L2 + g * stride);
+}
+
+template <int G, int W>
+HWY_INLINE void UpdateGroups(const Front& f, float* U, std::ptrdiff_t ld, std::ptrdiff_t j, std::ptrdiff_t g) {
+  const std::ptrdiff_t stride = f.p * group;
+  Tile<G, W> tile;
+  float* at = U + j * ld + g * group;
+  tile.Load(at, ld);
+  tile.Subtract(f.L2 + g * stride, stride, f.L2 + j / group * stride + j % group, f.p);
+  tile.Store(at, ld);
+}
+
+template <int W>
+HWY_INLINE void UpdateStrip(const Front& f, float* U, std::ptrdiff_t ld, std::ptrdiff_t j) {
+  const std::ptrdiff_t groups = ld / group;
+  std::ptrdiff_t g = j / group;
+  for (; g + highest <= groups; g += highest) UpdateGroups<highest, W>(f, U, ld, j, g);
+  for (; g < groups; ++g) UpdateGroups<1, W>(f, U, ld, j, g);
+}
+
+void UpdateFront(const Front& f, float* U, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  const std::ptrdiff_t ld = whole_groups(f.r);
+  std::ptrdiff_t j = begin;
+  for (; j + widest <= end; j += widest) UpdateStrip<widest>(f, U, ld, j);
+  if constexpr (widest >= 8)
+    for (; j + 4 <= end; j += 4) UpdateStrip<4>(f, U, ld, j);
+  if constexpr (widest >= 4)
+    for (; j + 2 <= end; j += 2) UpdateStrip<2>(f, U, ld, j);
+  for (; j < end; ++j) UpdateStrip<1>(f, U, ld, j);
+}
+
+/// z <- z +- (G groups of A) y; `stride` floats from group to group of A.
+template <int G, int S, bool subtract>
+HWY_INLINE void MultiplyGroups(const float* A, std::ptrdiff_t stride, std::ptrdiff_t k, const float* y,
+                               std::ptrdiff_t y_apart, float* z, std::ptrdiff_t z_apart) {
+  V sum[G * vectors][S];
+  for (int s = 0; s < S; ++s)
+    for (int v = 0; v < G * vectors; ++v)
+      sum[v][s] = subtract ? hn::LoadU(D(), z + s * z_apart + v * lanes) : hn::Zero(D());
+  for (std::ptrdiff_t i = 0; i < k; ++i) {
+    V b[S];
+    for (int s = 0; s < S; ++s) b[s] = hn::Set(D(), y[s * y_apart + i]);
+    for (int g = 0; g < G; ++g)
+      for (int v = 0; v < vectors; ++v) {
+        const V a = hn::LoadU(D(), A + g * stride + i * group + v * lanes);
+        for (int s = 0; s < S; ++s) {
+          V& x = sum[g * vectors + v][s];
+          x = subtract ? hn::NegMulAdd(a, b[s], x) : hn::MulAdd(a, b[s], x);
+        }
+      }
+  }
+  for (int s = 0; s < S; ++s)
+    for (int v = 0; v < G * vectors; ++v) hn::StoreU(sum[v][s], D(), z + s * z_apart + v * lanes);
+}
+
+template <int S>
+void Forward(const Front& f, float* y, float* z) {
+  const std::ptrdiff_t stride = f.p * group, own = whole_groups(f.p), below = whole_groups(f.r);
+  for (std::ptrdiff_t g = 0; g * group < f.p; ++g) {
+    const float* A = f.L1 + g * stride;
+    const std::ptrdiff_t first = g * group;
+    MultiplyGroups<1, S, true>(A, stride, first, y, own, y + first, own);
+    for (std::ptrdiff_t k = first; k < std::min(f.p, first + group); ++k)
+      for (int s = 0; s < S; ++s) {
+        float* x = y + s * own;
+        const float solved = x[k] * f.inverse_diagonal[k];
+        x[k] = solved;
+        const V b = hn::Set(D(), solved);
+        for (int v = 0; v < vectors; ++v)
+          hn::StoreU(hn::NegMulAdd(hn::LoadU(D(), A + k * group + v * lanes), b, hn::LoadU(D(), x + first + v * lanes)),
+                     D(), x + first + v * lanes);
+      }
+  }
+  constexpr int G = S == 1 && vectors == 1 ? 4 : S <= 2 ? 2 : 1;
+  const std::ptrdiff_t groups = below / group;
+  std::ptrdiff_t g = 0;
+  for (; g + G <= groups; g += G)
+    MultiplyGroups<G, S, false>(f.L2 + g * stride, stride, f.p, y, own, z + g * group, below);
+  for (; g < groups; ++g) MultiplyGroups<1, S, false>(f.L2 + g * stride, stride, f.p, y, own, z + g * group, below);
+}
+
+/// y_k <- y_k - sum over the groups of column k . z for the columns [k, k + W).
+template <int W, int S>
+HWY_INLINE void SubtractProducts(const float* A, std::ptrdiff_t stride, std::ptrdiff_t groups, std::ptrdiff_t k,
+                                 const float* z, std::ptrdiff_t z_apart, float* y, std::ptrdiff_t y_apart) {
+  V sum[W][S];
+  for (int c = 0; c < W; ++c)
+    for (int s = 0; s < S; ++s) sum[c][s] = hn::Zero(D());
+  for (std::ptrdiff_t g = 0; g < groups; ++g)
+    for (int v = 0; v < vectors; ++v) {
+      V b[S];
+      for (int s = 0; s < S; ++s) b[s] = hn::LoadU(D(), z + s * z_apart + g * group + v * lanes);
+      for (int c = 0; c < W; ++c) {
+        const V a = hn::LoadU(D(), A + g * stride + (k + c) * group + v * lanes);
+        for (int s = 0; s < S; ++s) sum[c][s] = hn::MulAdd(a, b[s], sum[c][s]);
+      }
+    }
+  for (int c = 0; c < W; ++c)
+    for (int s = 0; s < S; ++s) y[s * y_apart + k + c] -= hn::GetLane(hn::SumOfLanes(D(), sum[c][s]));
+}
+
+template <int S>
+HWY_INLINE void SubtractAllProducts(const float* A, std::ptrdiff_t stride, std::ptrdiff_t groups, std::ptrdiff_t begin,
+                                    std::ptrdiff_t end, const float* z, std::ptrdiff_t z_apart, float* y,
+                                    std::ptrdiff_t y_apart) {
+  if (groups == 0) return;
+  constexpr int W = S == 1 ? 8 : 4;
+  std::ptrdiff_t k = begin;
+  for (; k + W <= end; k += W) SubtractProducts<W, S>(A, stride, groups, k, z, z_apart, y, y_apart);
+  for (; k < end; ++k) SubtractProducts<1, S>(A, stride, groups, k, z, z_apart, y, y_apart);
+}
+
+template <int S>
+void Backward(const Front& f, float* y, const float* z) {
+  const std::ptrdiff_t stride = f.p * group, own = whole_groups(f.p), below = whole_groups(f.r);
+  SubtractAllProducts<S>(f.L2, stride, below / group, 0, f.p, z, below, y, own);
+  for (std::ptrdiff_t g = own / group - 1; g >= 0; --g) {
+    const std::ptrdiff_t first = g * group, last = std::min(f.p, first + group);
+    const float* A = f.L1 + g * stride;
+    // The groups further down, then the triangle.
+    SubtractAllProducts<S>(A + stride, stride, own / group - 1 - g, first, last, y + first + group, own, y, own);
+    for (int s = 0; s < S; ++s) {
+      float* x = y + s * own;
+      for (std::ptrdiff_t k = last - 1; k >= first; --k) {
+        V sum = hn::Zero(D());
+        for (int v = 0; v < vectors; ++v)
+          sum = hn::MulAdd(hn::LoadU(D(), A + k * group + v * lanes), hn::LoadU(D(), x + first + v * lanes), sum);
+        x[k] = (x[k] - hn::GetLane(hn::SumOfLanes(D(), sum))) * f.inverse_diagonal[k];
+      }
+    }
+  }
+}
+
+void ForwardFront(const Front& f, int sides, float* y, float* z) {
+  if (sides == 1)
+    Forward<1>(f, y, z);
+  else if (sides == 2)
+    Forward<2>(f, y, z);
+  else
+    Forward<4>(f, y, z);
+}
+
+void BackwardFront(const Front& f, int sides, float* y, const float* z) {
+  if (sides == 1)
+    Backward<1>(f, y, z);
+  else if (sides == 2)
+    Backward<2>(f, y, z);
+  else
+    Backward<4>(f, y, z);
+}
+
+void FinishSparseRows(const Front& f, float* X) {
+  FinishRows<1>(f, X, group, X);
+}
+
+/// Columns [j, j + W) of M <- (M or 0) - X Y^T; B: the first column's row of Y.
+template <int W, bool clear>
+HWY_INLINE void SubtractOuter(const float* X, const float* B, std::ptrdiff_t k, float* M) {
+  Tile<1, W> tile;
+  if (clear) {
+    for (auto& row : tile.x)
+      for (V& entry : row) entry = hn::Zero(D());
+  } else {
+    tile.Load(M, group);
+  }
+  tile.Subtract(X, 0, B, k);
+  tile.Store(M, group);
+}
+
+void PassRows(const Front& f, const float* X, float* W) {
+  const std::ptrdiff_t stride = f.p * group;
+  std::ptrdiff_t j = 0;
+  for (; j < f.r; j += widest) {  // rows of L2 come in whole groups
+    const float* B = f.L2 + j / group * stride + j % group;
+    SubtractOuter<widest, true>(X, B, f.p, W + j * group);
+  }
+}
+
+void SubtractGram(std::ptrdiff_t p, const float* X, const float* Y, float* M) {
+  for (std::ptrdiff_t j = 0; j < group; j += widest) SubtractOuter<widest, false>(X, Y + j, p, M + j * group);
+}
+
+void SubtractRowProducts(std::ptrdiff_t p, const float* X, const float* v, float* out) {
+  MultiplyGroups<1, 1, true>(X, 0, p, v, 0, out, 0);
+}
+
+void SubtractRows(std::ptrdiff_t p, const float* X, const float* w, float* v) {
+  SubtractAllProducts<1>(X, 0, 1, 0, p, w, 0, v, 0);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace phiz
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace phiz {
+
+HWY_EXPORT(FactorOwn);
+HWY_EXPORT(FactorBelow);
+HWY_EXPORT(UpdateFront);
+HWY_EXPORT(ForwardFront);
+HWY_EXPORT(BackwardFront);
+HWY_EXPORT(FinishSparseRows);
+HWY_EXPORT(PassRows);
+HWY_EXPORT(SubtractGram);
+HWY_EXPORT(SubtractRowProducts);
+HWY_EXPORT(SubtractRows);
+
+bool factor_own(const Front& front, const float* F, std::ptrdiff_t ld) {
+  return HWY_DYNAMIC_DISPATCH(FactorOwn)(front, F, ld);
+}
+void factor_below(const Front& front, const float* F, std::ptrdiff_t ld, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  HWY_DYNAMIC_DISPATCH(FactorBelow)(front, F, ld, begin, end);
+}
+void update_front(const Front& front, float* U, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  HWY_DYNAMIC_DISPATCH(UpdateFront)(front, U, begin, end);
+}
+void forward_front(const Front& front, int sides, float* y, float* z) {
+  HWY_DYNAMIC_DISPATCH(ForwardFront)(front, sides, y, z);
+}
+void backward_front(const Front& front, int sides, float* y, const float* z) {
+  HWY_DYNAMIC_DISPATCH(BackwardFront)(front, sides, y, z);
+}
+void finish_rows(const Front& front, float* X) {
+  HWY_DYNAMIC_DISPATCH(FinishSparseRows)(front, X);
+}
+void pass_rows(const Front& front, const float* X, float* W) {
+  HWY_DYNAMIC_DISPATCH(PassRows)(front, X, W);
+}
+void subtract_gram(std::ptrdiff_t p, const float* X, const float* Y, float* M) {
+  HWY_DYNAMIC_DISPATCH(SubtractGram)(p, X, Y, M);
+}
+void subtract_row_products(std::ptrdiff_t p, const float* X, const float* v, float* out) {
+  HWY_DYNAMIC_DISPATCH(SubtractRowProducts)(p, X, v, out);
+}
+void subtract_rows(std::ptrdiff_t p, const float* X, const float* w, float* v) {
+  HWY_DYNAMIC_DISPATCH(SubtractRows)(p, X, w, v);
+}
+
+}  // namespace phiz
+#endif
