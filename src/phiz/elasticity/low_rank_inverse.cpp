@@ -78,6 +78,12 @@ void LowRankInverse::add(const float* step, const float* change, const float* in
   gamma_ = curvature / length;
 }
 
+Eigen::VectorXd LowRankInverse::products(const float* v) const {
+  Eigen::VectorXd out = dots(columns(), v, size_);
+  out.tail(count_) *= gamma_;
+  return out;
+}
+
 Eigen::VectorXd LowRankInverse::projection() const {
   Eigen::VectorXd u(2 * count_);
   u << sg_.head(count_), gamma_ * zg_.head(count_);

@@ -28,6 +28,10 @@ class LowRankInverse {
   /// leaves. A pair without positive curvature is not taken.
   void add(const float* s, const float* y, const float* z, const float* g);
 
+  /// S and Z, oldest pair first.
+  std::vector<const float*> columns() const;
+  /// [S^T v; gamma Z^T v].
+  Eigen::VectorXd products(const float* v) const;
   /// [S^T g; gamma Z^T g] of the last gradient.
   Eigen::VectorXd projection() const;
   static constexpr int most_history = 16;
@@ -42,8 +46,6 @@ class LowRankInverse {
   void apply(const float* inverse_v, const Eigen::VectorXd& u, double sign, float* y) const;
 
  private:
-  /// S and Z, oldest pair first.
-  std::vector<const float*> columns() const;
   const float* s(int pair) const { return s_[static_cast<std::size_t>(slot(pair))].get(); }
   const float* z(int pair) const { return z_[static_cast<std::size_t>(slot(pair))].get(); }
   int slot(int pair) const { return (first_ + pair) % history_; }

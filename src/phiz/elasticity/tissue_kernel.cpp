@@ -29,8 +29,8 @@ HWY_INLINE V Number(double value) {
   return hn::Set(D(), value);
 }
 
-HWY_INLINE void Load(const Blocks::Array& array, std::ptrdiff_t slot, int entries, V* out) {
-  for (int k = 0; k < entries; ++k) out[k] = hn::Load(D(), array.get() + Blocks::at(slot, entries, k));
+HWY_INLINE void Load(const double* array, std::ptrdiff_t slot, int entries, V* out) {
+  for (int k = 0; k < entries; ++k) out[k] = hn::LoadU(D(), array + Blocks::at(slot, entries, k));
 }
 
 /// Determinant of a symmetric matrix: xx, yy, zz, xy, xz, yz.
@@ -47,15 +47,15 @@ struct State {
 
   HWY_INLINE State(const Blocks& e, const double* x, std::ptrdiff_t slot) {
     V E[9];
-    Load(e.inverse, slot, 9, D9);
+    Load(e.inverse.get(), slot, 9, D9);
     Edges(D(), e.vertex.get() + 4 * slot, x, E);
     Multiply3(E, D9, F);
     Cofactor3(D(), F, C);
     J = Dot3(F, C);
-    Load(e.volume, slot, 1, &volume);
-    Load(e.mu, slot, 1, &mu);
-    Load(e.lambda, slot, 1, &lambda);
-    Load(e.active, slot, 1, &active);
+    Load(e.volume.get(), slot, 1, &volume);
+    Load(e.mu.get(), slot, 1, &mu);
+    Load(e.lambda.get(), slot, 1, &lambda);
+    Load(e.active.get(), slot, 1, &active);
   }
 };
 
@@ -111,7 +111,7 @@ double EvaluateTissue(const Blocks& e, const double* x, double* gradient, std::p
       }
       if (b < e.muscle_blocks) {
         V S[6], G[9], RS[9];
-        Load(e.stretch, slot, 6, S);
+        Load(e.stretch.get(), slot, 6, S);
         TimesStretch(s.F, S, G);
         ClosestRotation3(d, G, R);
         TimesStretch(R, S, RS);
@@ -254,7 +254,8 @@ HWY_INLINE void AddNeoHookeanStiffness(const State& s, V weight, const V h[4][3]
   AddVolume(s, lambda, hn::Mul(lambda, hn::Sub(s.J, n.alpha)), h, K);
 }
 
-void TissueStiffness(const Blocks& e, const double* x, float* stiffness, std::ptrdiff_t begin, std::ptrdiff_t end) {
+void TissueStiffness(const Blocks& e, const double* stretches, const double* x, float* stiffness, std::ptrdiff_t begin,
+                     std::ptrdiff_t end) {
   constexpr D d;
   constexpr std::size_t entries = 90;
   for (std::ptrdiff_t b = begin; b < end; ++b)
@@ -276,7 +277,7 @@ void TissueStiffness(const Blocks& e, const double* x, float* stiffness, std::pt
       }
       if (b < e.muscle_blocks) {
         V S[6];
-        Load(e.stretch, slot, 6, S);
+        Load(stretches, slot, 6, S);
         AddShape<true>(s, s.active, S, h, K);
         goal = hn::MulAdd(s.active, hn::Sub(SymmetricDeterminant(S), Number(1)), goal);
       }
@@ -351,9 +352,9 @@ double evaluate_tissue(const TissueBlocks& blocks, const double* x, double* grad
   return HWY_DYNAMIC_DISPATCH(EvaluateTissue)(blocks, x, gradient, begin, end);
 }
 
-void tissue_stiffness(const TissueBlocks& blocks, const double* x, float* stiffness, std::ptrdiff_t begin,
-                      std::ptrdiff_t end) {
-  HWY_DYNAMIC_DISPATCH(TissueStiffness)(blocks, x, stiffness, begin, end);
+void tissue_stiffness(const TissueBlocks& blocks, const double* stretches, const double* x, float* stiffness,
+                      std::ptrdiff_t begin, std::ptrdiff_t end) {
+  HWY_DYNAMIC_DISPATCH(TissueStiffness)(blocks, stretches, x, stiffness, begin, end);
 }
 
 }  // namespace phiz

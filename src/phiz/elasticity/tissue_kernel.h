@@ -49,9 +49,10 @@ double evaluate_tissue(const TissueBlocks& blocks, const double* x, double* grad
 /// Pairs of corners of a tet, in the order of their blocks in a stiffness.
 constexpr int corner_pairs[10][2] = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {1, 0}, {2, 0}, {3, 0}, {2, 1}, {3, 1}, {3, 2}};
 
-/// The exact Hessian of blocks [begin, end): per slot ten 3x3 blocks one after the other, column-major: entry (i, k) of
-/// pair (a, b) is the second derivative by coordinate i of corner a and k of corner b.
-void tissue_stiffness(const TissueBlocks& blocks, const double* x, float* stiffness, std::ptrdiff_t begin,
-                      std::ptrdiff_t end);
+/// The exact Hessian of blocks [begin, end) for the given stretches (as TissueBlocks::stretch): per slot ten 3x3 blocks
+/// one after the other, column-major: entry (i, k) of pair (a, b) is the second derivative by coordinate i of corner a
+/// and k of corner b.
+void tissue_stiffness(const TissueBlocks& blocks, const double* stretches, const double* x, float* stiffness,
+                      std::ptrdiff_t begin, std::ptrdiff_t end);
 
 }  // namespace phiz
