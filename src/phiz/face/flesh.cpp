@@ -19,6 +19,16 @@ bool moves_with(const HeadTemplate& head, Eigen::Index vertex, Carrier carrier) 
 
 }  // namespace
 
+VectorXd flat_softening(const MatrixX3d& V, const MatrixX4i& T) {
+  VectorXd share(T.rows());
+  for (Eigen::Index t = 0; t < T.rows(); ++t) {
+    const auto corner = [&](int k) { return Vector3d(V.row(T(t, k))); };
+    const double ratio = radius_ratio(corner(0), corner(1), corner(2), corner(3));
+    share[t] = std::clamp(ratio / flat_ratio, least_share, 1.0);
+  }
+  return share;
+}
+
 ElasticBody flesh_body(const HeadTemplate& head, const VectorXi& soft, const TermWeights& weights, double stiffness) {
   ElasticBody body;
   body.rest = head.volume.V;
@@ -26,12 +36,7 @@ ElasticBody flesh_body(const HeadTemplate& head, const VectorXi& soft, const Ter
   body.fixed.resize(static_cast<std::size_t>(body.rest.rows()));
   for (Eigen::Index v = 0; v < body.rest.rows(); ++v)
     body.fixed[static_cast<std::size_t>(v)] = !moves_with(head, v, Carrier::flesh);
-  body.stiffness.resize(soft.size());
-  for (Eigen::Index t = 0; t < soft.size(); ++t) {
-    const auto corner = [&](int k) { return Vector3d(body.rest.row(body.tets(t, k))); };
-    const double ratio = radius_ratio(corner(0), corner(1), corner(2), corner(3));
-    body.stiffness[t] = stiffness * std::clamp(ratio / flat_ratio, least_share, 1.0);
-  }
+  body.stiffness = stiffness * flat_softening(body.rest, body.tets);
   body.weights = weights;
   return body;
 }

@@ -7,9 +7,13 @@
 
 namespace phiz {
 
-/// The elastic body of the soft tets: bone vertices fixed, one stiffness (pascals) but for the flattest tets, which are
-/// softened down to a fiftieth, no attachments. Flat tets (1 % of the standard head's) sit where the lining of lips and
-/// lids is creased; at full stiffness a vertex between them takes dozens of iterations to settle.
+/// Share of the stiffness per tet: 1 but for the flattest tets, which are softened down to a fiftieth. Flat tets (1 %
+/// of the standard head's) sit where the lining of lips and lids is creased; at full stiffness a vertex between them
+/// takes dozens of iterations to settle.
+VectorXd flat_softening(const MatrixX3d& V, const MatrixX4i& T);
+
+/// The elastic body of the soft tets: bone vertices fixed, one stiffness (pascals) times flat_softening(), no
+/// attachments.
 ElasticBody flesh_body(const HeadTemplate& head, const VectorXi& soft, const TermWeights& weights, double stiffness);
 
 /// Sets the rows of vertices that move with skull or mandible to their places for a pose of the jaw.

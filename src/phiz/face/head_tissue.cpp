@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "phiz/face/head_tissue.h"
+
+#include <cmath>
+
+#include "phiz/core/error.h"
+#include "phiz/face/bone_slides.h"
+#include "phiz/face/flesh.h"
+
+namespace phiz {
+
+namespace {
+
+void require(const TissueOptions& options) {
+  for (const double value : {options.shear_scale, options.mu, options.muscle_stiffness})
+    if (!(value > 0 && std::isfinite(value)))
+      reject("tissue options", "the shear scale, mu and the stiffness of muscle must be positive");
+  for (const double value : {options.lambda, options.density})
+    if (!(value >= 0 && std::isfinite(value))) reject("tissue options", "lambda and density must not be negative");
+}
+
+/// The sum of the muscles' fractions in each of the tets `soft`.
+VectorXd muscle_share(const HeadTemplate& head, const VectorXi& soft) {
+  VectorXd share = VectorXd::Zero(head.volume.T.rows());
+  for (const Muscle& muscle : head.muscles)
+    for (Eigen::Index i = 0; i < muscle.tets.size(); ++i) share[muscle.tets[i]] += muscle.fraction[i];
+  return share(soft).cwiseMin(1.0);
+}
+
+}  // namespace
+
+HeadTissue head_tissue(const HeadTemplate& head, const TissueOptions& options) {
+  require(options);
+  HeadTissue tissue;
+  tissue.soft = soft_tets(head);
+  tissue.muscle = muscle_share(head, tissue.soft);
+  TissueBody& body = tissue.body;
+  body.rest = head.volume.V;
+  body.tets = head.volume.T(tissue.soft, Eigen::all);
+  const VectorXd softening = flat_softening(body.rest, body.tets);
+  body.active.resize(tissue.soft.size());
+  for (Eigen::Index t = 0; t < tissue.soft.size(); ++t) {
+    const double contractile = options.muscle_stiffness * tissue.muscle[t], sum = 1 - tissue.muscle[t] + contractile;
+    const double scale = options.shear_scale * softening[t] * sum;
+    body.moduli.push_back({scale * options.mu, scale * options.lambda});
+    body.active[t] = contractile / sum;
+  }
+  body.density = VectorXd::Constant(tissue.soft.size(), options.density);
+  body.gravity = options.gravity;
+  body.passive = options.passive;
+  body.slides = bone_slides(head);
+  body.pinned.resize(static_cast<std::size_t>(body.rest.rows()));
+  for (Eigen::Index v = 0; v < body.rest.rows(); ++v)
+    body.pinned[static_cast<std::size_t>(v)] = head.carrier[v] != static_cast<int>(Carrier::flesh);
+  for (const Slide& slide : body.slides) body.pinned[static_cast<std::size_t>(slide.vertex)] = 0;
+  validate(body);
+  return tissue;
+}
+
+void place_pins(const HeadTemplate& head, const TissueBody& body, const JawPose& pose, MatrixX3d& x) {
+  MatrixX3d bones = x;
+  place_bones(head, pose, bones);
+  for (Eigen::Index v = 0; v < x.rows(); ++v)
+    if (body.pinned[static_cast<std::size_t>(v)] != 0) x.row(v) = bones.row(v);
+}
+
+std::vector<Slide> place_slides(const HeadTemplate& head, const TissueBody& body, const JawPose& pose) {
+  std::vector<Slide> slides;
+  slides.reserve(body.slides.size());
+  for (const Slide& slide : body.slides) slides.push_back(placed(head, slide, pose));
+  return slides;
+}
+
+Eigen::Matrix<double, 3, 5> pin_rate(const HeadTemplate& head, int vertex, const JawPose& pose) {
+  if (head.carrier[vertex] != static_cast<int>(Carrier::mandible)) return Eigen::Matrix<double, 3, 5>::Zero();
+  return jaw_jacobian(head.jaw, pose, head.volume.V.row(vertex));
+}
+
+}  // namespace phiz

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The flesh of a head as muscle and passive tissue (Ichim et al. 2017, sections 3 and 4; phace.md sections 3, 4, 11).
+#pragma once
+
+#include <vector>
+
+#include "phiz/anatomy/head_template.h"
+#include "phiz/elasticity/tissue_body.h"
+
+namespace phiz {
+
+struct TissueOptions {
+  double shear_scale = 3000;  ///< E0, pascals: what mu = 1 stands for
+  double mu = 1, lambda = 3;  ///< multiples of E0 (phace.md section 11)
+  /// How many times stiffer muscle is than passive tissue: both moduli of its law.
+  double muscle_stiffness = 1;
+  double density = 1000;                ///< kg/m^3
+  Vector3d gravity = Vector3d::Zero();  ///< m/s^2, head frame
+  PassiveLaw passive = PassiveLaw::corotated;
+};
+
+struct HeadTissue {
+  VectorXi soft;  ///< rows of volume.T that body.tets are: soft_tets(head), ascending
+  VectorXd
+      muscle;  ///< per soft tet: share of its volume that muscles of expression and closers of the jaw fill, 0 to 1
+  TissueBody body;  ///< over all vertices of the volume, slides in the rest pose
+};
+
+/// Bone vertices are pinned, but those of head.attachments that slide. Flat tets are as soft as flesh_body() has them.
+/// A tet with a share f of muscle that is k times stiffer has the energy (1 - f) E_pass + f k E_act; the body says so
+/// as moduli times 1 - f + f k, of which the share f k / (1 - f + f k) is active. Throws phiz::Error(bad_input) for
+/// options or heads that make no body.
+HeadTissue head_tissue(const HeadTemplate& head, const TissueOptions& options = {});
+
+/// Moves the pinned rows of x (n x 3) to their places for a pose of the jaw.
+void place_pins(const HeadTemplate& head, const TissueBody& body, const JawPose& pose, MatrixX3d& x);
+/// The slides of the body (rest pose) in a pose of the jaw, in the same order.
+std::vector<Slide> place_slides(const HeadTemplate& head, const TissueBody& body, const JawPose& pose);
+/// Derivative of the place of a vertex of bone by the pose: zero for what the mandible does not carry.
+Eigen::Matrix<double, 3, 5> pin_rate(const HeadTemplate& head, int vertex, const JawPose& pose);
+
+}  // namespace phiz
