@@ -92,9 +92,9 @@ TEST(TissueSystem, EnergyForcesAndStiffnessAreThoseOfTheLaws) {
       const FreeMotion motion(body, x);
       std::vector<float> room;
       BlockMatrix A = system.pattern;
-      for (const Stiffness kind : {Stiffness::exact, Stiffness::projected}) {
-        system.assemble(system.stiffness_state(at.get(), g.get()), kind, true, room, A);
-        const SparseMatrixd H = energy.hessian(x, motion, kind);
+      {
+        system.assemble(system.stiffness_state(at.get(), g.get()), any_curvature, true, room, A);
+        const SparseMatrixd H = energy.hessian(x, motion, Stiffness::exact);
         Random random(4);
         VectorXd d = VectorXd::NullaryExpr(motion.size(), [&] { return random.normal(); });
         const MatrixX3d way = motion.expanded(d), force = motion.expanded(H * d);
@@ -106,7 +106,7 @@ TEST(TissueSystem, EnergyForcesAndStiffnessAreThoseOfTheLaws) {
             product.row(row) += (block * way.row(column).transpose()).transpose();
             if (row != column) product.row(column) += (block.transpose() * way.row(row).transpose()).transpose();
           }
-        EXPECT_LT((product - force).norm(), 2e-5 * force.norm()) << amount << " " << static_cast<int>(kind);
+        EXPECT_LT((product - force).norm(), 2e-5 * force.norm()) << amount;
       }
     }
 }

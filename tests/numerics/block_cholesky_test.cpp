@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <cmath>
 
 #include "phiz/core/parallel.h"
@@ -69,7 +71,7 @@ TEST(BlockCholesky, SolvesToSinglePrecision) {
   for (const auto& [n, depth] : {std::pair{1, 1}, {2, 1}, {4, 3}, {9, 4}}) {
     const System system = random_system(n, depth, 3);
     BlockCholesky factor(system.A);
-    ASSERT_TRUE(factor.factorise(system.A));
+    ASSERT_EQ(factor.factorise(system.A), 0);
     const Eigen::VectorXf b = random_floats(system.dense.rows(), 4);
     Eigen::VectorXf x = b;
     factor.solve(x.data());
@@ -80,7 +82,7 @@ TEST(BlockCholesky, SolvesToSinglePrecision) {
 TEST(BlockCholesky, ForwardAndBackwardAreTheTwoHalves) {
   const System system = random_system(5, 2, 5);
   BlockCholesky factor(system.A);
-  ASSERT_TRUE(factor.factorise(system.A));
+  ASSERT_EQ(factor.factorise(system.A), 0);
   const Eigen::VectorXf a = random_floats(system.dense.rows(), 6), b = random_floats(system.dense.rows(), 7);
   Eigen::VectorXf x = a, y = b;
   factor.forward(x.data());
@@ -93,7 +95,7 @@ TEST(BlockCholesky, ForwardAndBackwardAreTheTwoHalves) {
 TEST(BlockCholesky, SeveralSidesAreSolvedAsOne) {
   const System system = random_system(6, 3, 8);
   BlockCholesky factor(system.A);
-  ASSERT_TRUE(factor.factorise(system.A));
+  ASSERT_EQ(factor.factorise(system.A), 0);
   for (const int sides : {2, 4}) {
     Eigen::MatrixXf X(system.dense.rows(), sides);
     for (int s = 0; s < sides; ++s) X.col(s) = random_floats(X.rows(), 10 + static_cast<std::uint64_t>(s));
@@ -107,12 +109,12 @@ TEST(BlockCholesky, HasTheSameBitsForAnyThreadCountAndForItsTwin) {
   const System system = random_system(14, 6, 9);
   const Eigen::VectorXf b = random_floats(system.dense.rows(), 4);
   BlockCholesky factor(system.A);
-  ASSERT_TRUE(factor.factorise(system.A));
+  ASSERT_EQ(factor.factorise(system.A), 0);
   Eigen::VectorXf x = b;
   factor.solve(x.data());
   BlockCholesky twin = factor.twin();
   const ThreadLimit one(1);
-  ASSERT_TRUE(twin.factorise(system.A, false));
+  ASSERT_EQ(twin.factorise(system.A, false), 0);
   Eigen::VectorXf y = b;
   twin.solve(y.data());
   EXPECT_EQ(x, y);
@@ -121,7 +123,7 @@ TEST(BlockCholesky, HasTheSameBitsForAnyThreadCountAndForItsTwin) {
 TEST(BlockCholesky, SparseRowsAreSolvedWhereTheyAreNotZero) {
   const System system = random_system(9, 4, 12);
   BlockCholesky factor(system.A);
-  ASSERT_TRUE(factor.factorise(system.A));
+  ASSERT_EQ(factor.factorise(system.A), 0);
   Random random(13);
   const int vertices = factor.columns();
   const auto some_rows = [&](int count) {
@@ -156,15 +158,39 @@ TEST(BlockCholesky, SparseRowsAreSolvedWhereTheyAreNotZero) {
   EXPECT_NEAR(sum.dot(v), w.dot(A.products(v.data())), 1e-5F * sum.norm() * v.norm());
 }
 
-TEST(BlockCholesky, TellsWhenAMatrixIsNotPositiveDefiniteAndRecovers) {
+TEST(BlockCholesky, TurnsTheSignOfNegativePivots) {
+  System system = random_system(4, 2, 11);
+  for (int negative = 1; negative <= 3; ++negative) {
+    // A pair of unknowns that is bound more strongly than held.
+    const auto bound = static_cast<std::size_t>(system.A.start[10 * negative]) + 1;
+    system.A.value[9 * bound] = 120;
+    const int row = 3 * system.A.row[bound], column = 30 * negative;
+    system.dense(row, column) = system.dense(column, row) = 120;
+    BlockCholesky factor(system.A);
+    EXPECT_EQ(factor.factorise(system.A), negative);
+    MatrixXd inverse(system.dense.rows(), system.dense.cols());
+    for (Eigen::Index c = 0; c < inverse.cols(); ++c) {
+      Eigen::VectorXf e = Eigen::VectorXf::Unit(inverse.rows(), c);
+      factor.solve(e.data());
+      inverse.col(c) = e.cast<double>();
+    }
+    const MatrixXd symmetric = 0.5 * (inverse + inverse.transpose());
+    EXPECT_GT(Eigen::SelfAdjointEigenSolver<MatrixXd>(symmetric).eigenvalues().minCoeff(), 1e-3);
+    const VectorXd change = Eigen::SelfAdjointEigenSolver<MatrixXd>(symmetric.inverse() - system.dense).eigenvalues();
+    EXPECT_LT(change.head(change.size() - negative).cwiseAbs().maxCoeff(), 0.02);
+    EXPECT_GT(change[change.size() - negative], 10);
+  }
+}
+
+TEST(BlockCholesky, TellsWhenAMatrixIsNotFiniteAndRecovers) {
   System system = random_system(4, 2, 11);
   BlockCholesky factor(system.A);
   const std::vector<float> good = system.A.value;
   for (const float bad : {-1.0F, 0.0F, std::nanf("")}) {
     system.A.value[9 * static_cast<std::size_t>(system.A.start[7])] = bad;
-    EXPECT_FALSE(factor.factorise(system.A)) << bad;
+    EXPECT_EQ(factor.factorise(system.A), -1) << bad;
     system.A.value = good;
-    EXPECT_TRUE(factor.factorise(system.A));
+    EXPECT_EQ(factor.factorise(system.A), 0);
   }
 }
 

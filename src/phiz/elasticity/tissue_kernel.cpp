@@ -153,7 +153,7 @@ HWY_INLINE void Cross(const V* a, const V* b, V* out) {
 /// Adds the second derivative of weight min_R |F - R S|^2: for corners with hat gradients g, h in F and S g, S h in F S
 /// it is 2 (g . h) I - 2 A^T M B with the twists A = [S g] R^T, B = [S h] R^T and M = (tr Y I - Y)^-1, Y = R^T F S.
 template <bool muscle>
-HWY_INLINE void AddShape(const State& s, V weight, const V* S, const V h[4][3], V K[10][9]) {
+HWY_INLINE void AddShape(const State& s, V weight, const V* S, double least_curvature, const V h[4][3], V K[10][9]) {
   constexpr D d;
   V G[9], R[9], Y[9], N[9], M[9];
   if (muscle)
@@ -178,6 +178,22 @@ HWY_INLINE void AddShape(const State& s, V weight, const V* S, const V h[4][3], 
   const auto regular = hn::Gt(det, least);
   const V inverse = hn::IfThenElseZero(regular, hn::Div(Number(1), hn::IfThenElse(regular, det, Number(1))));
   for (V& m : M) m = hn::Mul(inverse, m);
+  if (least_curvature > any_curvature) {
+    // The smallest eigenvalue of N from below; the twist with it has the curvature 2 - 4 / nu.
+    const V minors =
+        hn::Add(hn::MulSub(N[0], N[4], hn::Mul(N[1], N[1])),
+                hn::Add(hn::MulSub(N[4], N[8], hn::Mul(N[5], N[5])), hn::MulSub(N[0], N[8], hn::Mul(N[2], N[2]))));
+    V nu = hn::Neg(hn::Sqrt(Dot9(N, N)));
+    constexpr int steps = 12;
+    for (int i = 0; i < steps; ++i) {
+      const V value = hn::MulSub(hn::MulAdd(hn::Sub(nu, trace), nu, minors), nu, det);
+      const V slope = hn::MulAdd(hn::MulSub(Number(3), nu, hn::Add(trace, trace)), nu, minors);
+      nu = hn::Sub(nu, hn::IfThenElseZero(hn::Gt(slope, Number(1e-12)), hn::Div(value, slope)));
+    }
+    const V share = hn::Mul(nu, Number(0.5 * (1 - least_curvature)));
+    const V weaker = hn::Min(Number(1), hn::Max(hn::Zero(d), share));
+    for (V& m : M) m = hn::Mul(weaker, m);
+  }
   const V factor = hn::Mul(Number(2), hn::Mul(weight, s.mu));
   // Twists by rows of 3: column i is (S h) x (row i of R).
   V A[4][9];
@@ -232,7 +248,14 @@ HWY_INLINE void AddVolume(const State& s, V stiff, V pressure, const V h[4][3], 
   }
 }
 
-HWY_INLINE void AddNeoHookeanStiffness(const State& s, V weight, const V h[4][3], V K[10][9]) {
+/// A pressure that neither stretches nor twists below the least curvature.
+HWY_INLINE V BoundedPressure(const State& s, V pressure, double least_curvature) {
+  if (least_curvature <= any_curvature) return pressure;
+  const V unit = hn::Div(hn::Add(s.mu, s.mu), hn::Sqrt(hn::Max(Dot9(s.F, s.F), Number(1e-12))));
+  return hn::Min(hn::Max(pressure, hn::Mul(unit, Number(least_curvature))), hn::Mul(unit, Number(1 - least_curvature)));
+}
+
+HWY_INLINE void AddNeoHookeanStiffness(const State& s, V weight, double least_curvature, const V h[4][3], V K[10][9]) {
   const NeoHookean n(s);
   const V I = hn::Add(Dot9(s.F, s.F), Number(1)), mu = hn::Mul(weight, n.mu), lambda = hn::Mul(weight, n.lambda);
   const V inverse = hn::Div(Number(1), I);
@@ -251,11 +274,11 @@ HWY_INLINE void AddNeoHookeanStiffness(const State& s, V weight, const V h[4][3]
       }
     }
   }
-  AddVolume(s, lambda, hn::Mul(lambda, hn::Sub(s.J, n.alpha)), h, K);
+  AddVolume(s, lambda, BoundedPressure(s, hn::Mul(lambda, hn::Sub(s.J, n.alpha)), least_curvature), h, K);
 }
 
-void TissueStiffness(const Blocks& e, const double* stretches, const double* x, float* stiffness, std::ptrdiff_t begin,
-                     std::ptrdiff_t end) {
+void TissueStiffness(const Blocks& e, const double* stretches, const double* x, double least_curvature,
+                     float* stiffness, std::ptrdiff_t begin, std::ptrdiff_t end) {
   constexpr D d;
   constexpr std::size_t entries = 90;
   for (std::ptrdiff_t b = begin; b < end; ++b)
@@ -269,20 +292,21 @@ void TissueStiffness(const Blocks& e, const double* stretches, const double* x, 
       const V passive = hn::Sub(Number(1), s.active);
       V volume_weight = s.active, goal = s.active;  // sum of weights, and of weights times volume goals
       if (e.passive == PassiveLaw::corotated) {
-        AddShape<false>(s, passive, nullptr, h, K);
+        AddShape<false>(s, passive, nullptr, least_curvature, h, K);
         volume_weight = Number(1);
         goal = Number(1);
       } else {
-        AddNeoHookeanStiffness(s, passive, h, K);
+        AddNeoHookeanStiffness(s, passive, least_curvature, h, K);
       }
       if (b < e.muscle_blocks) {
         V S[6];
         Load(stretches, slot, 6, S);
-        AddShape<true>(s, s.active, S, h, K);
+        AddShape<true>(s, s.active, S, least_curvature, h, K);
         goal = hn::MulAdd(s.active, hn::Sub(SymmetricDeterminant(S), Number(1)), goal);
       }
       const V twice = hn::Add(s.lambda, s.lambda);
-      AddVolume(s, hn::Mul(twice, volume_weight), hn::Mul(twice, hn::MulSub(volume_weight, s.J, goal)), h, K);
+      AddVolume(s, hn::Mul(twice, volume_weight),
+                BoundedPressure(s, hn::Mul(twice, hn::MulSub(volume_weight, s.J, goal)), least_curvature), h, K);
       HWY_ALIGN double lanes[entries * Blocks::width];
       for (int pair = 0; pair < 10; ++pair)
         for (int k = 0; k < 9; ++k)
@@ -352,9 +376,9 @@ double evaluate_tissue(const TissueBlocks& blocks, const double* x, double* grad
   return HWY_DYNAMIC_DISPATCH(EvaluateTissue)(blocks, x, gradient, begin, end);
 }
 
-void tissue_stiffness(const TissueBlocks& blocks, const double* stretches, const double* x, float* stiffness,
-                      std::ptrdiff_t begin, std::ptrdiff_t end) {
-  HWY_DYNAMIC_DISPATCH(TissueStiffness)(blocks, stretches, x, stiffness, begin, end);
+void tissue_stiffness(const TissueBlocks& blocks, const double* stretches, const double* x, double least_curvature,
+                      float* stiffness, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  HWY_DYNAMIC_DISPATCH(TissueStiffness)(blocks, stretches, x, least_curvature, stiffness, begin, end);
 }
 
 }  // namespace phiz

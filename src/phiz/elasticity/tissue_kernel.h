@@ -49,10 +49,14 @@ double evaluate_tissue(const TissueBlocks& blocks, const double* x, double* grad
 /// Pairs of corners of a tet, in the order of their blocks in a stiffness.
 constexpr int corner_pairs[10][2] = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {1, 0}, {2, 0}, {3, 0}, {2, 1}, {3, 1}, {3, 2}};
 
-/// The exact Hessian of blocks [begin, end) for the given stretches (as TissueBlocks::stretch): per slot ten 3x3 blocks
-/// one after the other, column-major: entry (i, k) of pair (a, b) is the second derivative by coordinate i of corner a
-/// and k of corner b.
-void tissue_stiffness(const TissueBlocks& blocks, const double* stretches, const double* x, float* stiffness,
-                      std::ptrdiff_t begin, std::ptrdiff_t end);
+/// For tissue_stiffness(): no bound, the exact Hessian.
+constexpr double any_curvature = -1e300;
+
+/// The Hessian of blocks [begin, end) for the given stretches (as TissueBlocks::stretch): per slot ten 3x3 blocks one
+/// after the other, column-major: entry (i, k) of pair (a, b) is the second derivative by coordinate i of corner a and
+/// k of corner b. Twists and pressures whose curvature is below `least_curvature` times 2 mu are made weaker until it
+/// is not; with 0 the Hessian of a relaxed tet has no negative eigenvalue.
+void tissue_stiffness(const TissueBlocks& blocks, const double* stretches, const double* x, double least_curvature,
+                      float* stiffness, std::ptrdiff_t begin, std::ptrdiff_t end);
 
 }  // namespace phiz

@@ -122,28 +122,19 @@ struct TissueSolver::Parts {
     compliance.clear();
   }
 
-  /// A factor of the Hessian at a state, exact if that is positive definite, else projected and as little shifted as
-  /// need be.
+  /// A factor of the Hessian at a state: exact if that is positive definite, else bounded where tets twist or are under
+  /// pressure, until few negative eigenvalues are left, which count as positive.
   void factorise_now(const double* at, const double* gradient) {
     const StiffnessState state = system.stiffness_state(at, gradient);
-    system.assemble(state, Stiffness::exact, true, room, A);
     ++counts.factorisations;
-    bool good = factor.factorise(A);
-    if (!good) {
+    for (const double least_curvature : {any_curvature, -0.3, 0.0}) {
+      system.assemble(state, least_curvature, true, room, A);
+      const int negative = factor.factorise(A);
+      if (negative == 0) break;
+      if (negative < 0 && least_curvature == 0)
+        fail("the stiffness of the tissue is not finite", "check moduli, activations and positions");
       ++counts.projections;
-      system.assemble(state, Stiffness::projected, true, room, A);
-      const std::vector<float> values = A.value;
-      for (float shift = 0; !good && shift < 1e3F; shift = std::max(1e-5F, 30 * shift)) {
-        A.value = values;
-        for (int j = 0; j < A.columns(); ++j) {
-          float* diagonal = A.value.data() + 9 * static_cast<std::ptrdiff_t>(A.start[static_cast<std::size_t>(j)]);
-          const float scale = shift * (diagonal[0] + diagonal[4] + diagonal[8]) / 3;
-          for (int k = 0; k < 9; k += 4) diagonal[k] += scale;
-        }
-        good = factor.factorise(A);
-      }
     }
-    if (!good) fail("the stiffness of the tissue is not finite", "check moduli, activations and positions");
     has_factor = fresh = true;
     served = 0;
     factor_inverse_time_step2 = state.inverse_time_step2;
@@ -152,8 +143,8 @@ struct TissueSolver::Parts {
 
   void start_job() {
     auto work = [this, state = system.stiffness_state(x.get(), g.get())] {
-      system.assemble(state, Stiffness::exact, false, spare_room, spare_A);
-      return spare.factorise(spare_A, false);
+      system.assemble(state, any_curvature, false, spare_room, spare_A);
+      return spare.factorise(spare_A, false) == 0;
     };
     job_due = counts.solves + factor_delay;
     ++counts.factorisations;

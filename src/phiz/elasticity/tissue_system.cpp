@@ -36,26 +36,6 @@ Matrix3d common_directions(const MatrixX3d& normals) {
   return Matrix3d::Identity() - Q * Q.transpose();
 }
 
-/// Blocks of the projected stiffness of one tet.
-void projected_tet(const TissueBody& body, const TetRest& rest, const Matrix3d& F, const Matrix3d& S, Eigen::Index t,
-                   double inverse_growth, float* out) {
-  const auto s = static_cast<std::size_t>(t);
-  const double active = body.active.size() > 0 ? body.active[t] : 0;
-  Matrix9d H = (1 - active) * (body.passive == PassiveLaw::corotated
-                                   ? corotated_stiffness(F, Matrix3d::Identity(), body.moduli[s], Stiffness::projected)
-                                   : neo_hookean_stiffness(F, body.moduli[s], Stiffness::projected));
-  if (active > 0) H += active * corotated_stiffness(F, S, body.moduli[s], Stiffness::projected);
-  H *= rest.volume[t];
-  const Eigen::Matrix<double, 3, 4> hats = inverse_growth * hat_gradients(rest.inverse_edges[s]);
-  for (int pair = 0; pair < 10; ++pair) {
-    Matrix3d K = Matrix3d::Zero();
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        K += hats(i, corner_pairs[pair][0]) * hats(j, corner_pairs[pair][1]) * H.block<3, 3>(3 * i, 3 * j);
-    for (int k = 0; k < 9; ++k) out[9 * pair + k] = static_cast<float>(K.data()[k]);
-  }
-}
-
 }  // namespace
 
 AlignedDoubles zero_doubles(std::ptrdiff_t size) {
@@ -262,32 +242,12 @@ StiffnessState TissueSystem::stiffness_state(const double* x, const double* grad
   return state;
 }
 
-void TissueSystem::assemble(const StiffnessState& state, Stiffness kind, bool parallel, std::vector<float>& room,
-                            BlockMatrix& A) const {
+void TissueSystem::assemble(const StiffnessState& state, double least_curvature, bool parallel,
+                            std::vector<float>& room, BlockMatrix& A) const {
   room.resize(static_cast<std::size_t>(90 * TissueBlocks::width * blocks.blocks));
-  if (kind == Stiffness::exact) {
-    for_chunks(parallel, blocks.blocks, block_grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-      tissue_stiffness(blocks, state.stretch.data(), state.x.data(), room.data(), begin, end);
-    });
-  } else {
-    const TetRest rest = tet_rest(body.rest, body.tets);
-    MatrixX3d x = body.rest;
-    store(state.x.data(), x);
-    for_chunks(parallel, body.tets.rows(), 64, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-      for (std::ptrdiff_t t = begin; t < end; ++t) {
-        const std::ptrdiff_t slot = blocks.slot_of[t];
-        Matrix3d S = Matrix3d::Identity();
-        if (slot < TissueBlocks::width * blocks.muscle_blocks) {
-          Vector6d a;
-          for (int k = 0; k < 6; ++k) a[k] = state.stretch[TissueBlocks::at(slot, 6, k)];
-          S = activation_stretch(a);
-        }
-        const double inverse_growth = body.growth.size() > 0 ? 1 / body.growth[t] : 1;
-        projected_tet(body, rest, inverse_growth * deformation_gradient(x, body.tets, rest, t), S, t, inverse_growth,
-                      room.data() + 90 * slot);
-      }
-    });
-  }
+  for_chunks(parallel, blocks.blocks, block_grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    tissue_stiffness(blocks, state.stretch.data(), state.x.data(), least_curvature, room.data(), begin, end);
+  });
   for_chunks(parallel, free, column_grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t j = begin; j < end; ++j)
       for (int k = pattern.start[static_cast<std::size_t>(j)]; k < pattern.start[static_cast<std::size_t>(j) + 1];
@@ -306,7 +266,7 @@ void TissueSystem::assemble(const StiffnessState& state, Stiffness kind, bool pa
         if (row >= 0 && i == j) {
           const auto r = static_cast<std::size_t>(row);
           const float scale = block.trace() / 3;
-          if (kind == Stiffness::exact) block += state.slide_bend[r].cast<float>();
+          if (least_curvature <= any_curvature) block += state.slide_bend[r].cast<float>();
           const Eigen::Matrix3f keep = state.sliding[r].keep.cast<float>();
           block = keep * block * keep + scale * (Eigen::Matrix3f::Identity() - keep);
         } else {

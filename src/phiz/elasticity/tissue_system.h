@@ -62,9 +62,9 @@ struct TissueSystem {
   double volume(const double* x) const;
 
   StiffnessState stiffness_state(const double* x, const double* gradient) const;
-  /// The Hessian at a state, restricted to what slides allow: exact, or projected tet by tet. `room`: 90 floats per
-  /// slot.
-  void assemble(const StiffnessState& state, Stiffness kind, bool parallel, std::vector<float>& room,
+  /// The Hessian at a state, restricted to what slides allow; exact or bounded as tissue_stiffness(). `room`: 90 floats
+  /// per slot.
+  void assemble(const StiffnessState& state, double least_curvature, bool parallel, std::vector<float>& room,
                 BlockMatrix& A) const;
 
  private:

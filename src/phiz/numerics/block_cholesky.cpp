@@ -212,12 +212,17 @@ struct BlockCholesky::Plan {
 };
 
 struct BlockCholesky::Values {
-  Floats L, inverse_diagonal;
+  Floats L, inverse_diagonal, sign;
+  Floats diagonal;  ///< of the matrix
   std::array<Floats, bins + 1> arena, own;
   std::array<Floats, bins + 1> y, z;  ///< of the solves
   Floats outside[bins];               ///< what the nodes of a bin give to top vertices
 
-  explicit Values(const Plan& plan) : L(zeros(plan.value_count)), inverse_diagonal(zeros(3 * plan.n)) {
+  explicit Values(const Plan& plan)
+      : L(zeros(plan.value_count)),
+        inverse_diagonal(zeros(3 * plan.n)),
+        sign(zeros(3 * plan.n)),
+        diagonal(zeros(3 * plan.n)) {
     for (std::size_t b = 0; b <= bins; ++b) {
       y[b] = zeros(most_sides * plan.tallest[b]);
       z[b] = zeros(most_sides * plan.tallest[b]);
@@ -233,7 +238,13 @@ struct BlockCholesky::Values {
     }
   }
   Front front(const Plan::Node& node) const {
-    return {node.p(), node.r(), L.get() + node.L1, L.get() + node.L2, inverse_diagonal.get() + 3 * node.first};
+    return {node.p(),
+            node.r(),
+            L.get() + node.L1,
+            L.get() + node.L2,
+            inverse_diagonal.get() + 3 * node.first,
+            sign.get() + 3 * node.first,
+            diagonal.get() + 3 * node.first};
   }
 };
 
@@ -426,12 +437,19 @@ double BlockCholesky::flops() const {
   return work;
 }
 
-bool BlockCholesky::factorise(const BlockMatrix& A, bool parallel) {
+int BlockCholesky::factorise(const BlockMatrix& A, bool parallel) {
   const Plan& plan = *plan_;
   if (A.row.size() != plan.destination.size() || A.columns() != plan.n || A.value.size() != 9 * A.row.size())
     reject("block matrix", "does not have the pattern that was analysed");
   Values& values = *values_;
   values.prepare(plan);
+  for (int j = 0; j < plan.n; ++j) {
+    const float* block = A.value.data() + 9 * static_cast<std::ptrdiff_t>(A.start[static_cast<std::size_t>(j)]);
+    for (int k = 0; k < 3; ++k) {
+      if (!(block[4 * k] > 0)) return -1;
+      values.diagonal[static_cast<std::size_t>(3 * j + k)] = block[4 * k];
+    }
+  }
   const auto factorise_node = [&](const Plan::Node& node, bool wide) {
     const auto bin = static_cast<std::size_t>(node.bin);
     const Front front = values.front(node);
@@ -455,35 +473,42 @@ bool BlockCholesky::factorise(const BlockMatrix& A, bool parallel) {
              plan.runs.data() + child.runs, plan.runs.data() + child.runs_end, F, ld, U, own_rows);
     }
     const FlushTinyNumbers flush;
-    if (!factor_own(front, F, ld)) return false;
+    const int negative = factor_own(front, F, ld);
+    if (negative < 0) return negative;
     if (!wide || node.work() < wide_front) {
-      factor_below(front, F, ld, 0, below / front_group);
-      update_front(front, U, 0, front.r);
-      return true;
+      factor_below(front, negative > 0, F, ld, 0, below / front_group);
+      update_front(front, negative > 0, U, 0, front.r);
+      return negative;
     }
     parallel_chunks(below / front_group, 3, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
       const FlushTinyNumbers flush_here;
-      factor_below(front, F, ld, begin, end);
+      factor_below(front, negative > 0, F, ld, begin, end);
     });
     parallel_chunks(front.r, 2 * front_group, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
       const FlushTinyNumbers flush_here;
-      update_front(front, U, begin, end);
+      update_front(front, negative > 0, U, begin, end);
     });
-    return true;
+    return negative;
   };
-  std::array<char, bins + 1> good{};
+  std::array<int, bins + 1> negative_in{};
   const auto factorise_bin = [&](std::ptrdiff_t bin, bool wide) {
     const auto b = static_cast<std::size_t>(bin);
-    good[b] = std::all_of(plan.members[b].begin(), plan.members[b].end(),
-                          [&](int k) { return factorise_node(plan.nodes[static_cast<std::size_t>(k)], wide); });
+    for (const int k : plan.members[b]) {
+      const int here = factorise_node(plan.nodes[static_cast<std::size_t>(k)], wide);
+      if (here < 0) {
+        negative_in[b] = here;
+        return;
+      }
+      negative_in[b] += here;
+    }
   };
   if (parallel)
     parallel_chunks(bins, 1, [&](std::ptrdiff_t bin, std::ptrdiff_t) { factorise_bin(bin, false); });
   else
     for (int bin = 0; bin < bins; ++bin) factorise_bin(bin, false);
-  if (!std::all_of(good.begin(), good.begin() + bins, [](char g) { return g != 0; })) return false;
+  if (*std::min_element(negative_in.begin(), negative_in.end()) < 0) return -1;
   factorise_bin(bins, parallel);
-  return good[bins] != 0;
+  return negative_in[bins] < 0 ? -1 : std::accumulate(negative_in.begin(), negative_in.end(), 0);
 }
 
 void BlockCholesky::forward(float* x, int sides) const {

@@ -62,9 +62,11 @@ class BlockCholesky {
   /// Another one for the same pattern, not factorised; cheap.
   BlockCholesky twin() const;
 
-  /// Factorises; `parallel`: on all threads, with the same bits. Returns false if A is not positive definite to single
-  /// precision; the factor is then of no use until the next success.
-  bool factorise(const BlockMatrix& A, bool parallel = true);
+  /// Factorises; `parallel`: on all threads, with the same bits. Where A is not positive definite, the pivots that tell
+  /// so count as their absolute values: L L^T is positive definite and differs from A by a matrix of a rank that is
+  /// returned, the number of negative eigenvalues of A. Returns -1, and leaves no factor, if A is not finite or a
+  /// diagonal entry of it not positive.
+  int factorise(const BlockMatrix& A, bool parallel = true);
 
   /// With A = L L^T: x <- L^-1 x and x <- L^-T x, 3 columns() floats. `sides` of them (1, 2 or 4), one after the other,
   /// cost little more than one. The same bits for any number of threads. Not to be called from two threads at once on

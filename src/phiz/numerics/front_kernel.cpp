@@ -36,11 +36,15 @@ struct Tile {
     for (int c = 0; c < W; ++c)
       for (int v = 0; v < G * vectors; ++v) x[v][c] = hn::LoadU(D(), F + c * ld + v * lanes);
   }
-  HWY_INLINE void Subtract(const float* A, std::ptrdiff_t stride, const float* B, std::ptrdiff_t k) {
+  template <bool is_signed = false>
+  HWY_INLINE void Subtract(const float* A, std::ptrdiff_t stride, const float* B, std::ptrdiff_t k,
+                           const float* sign = nullptr) {
     for (std::ptrdiff_t i = 0; i < k; ++i) {
       V a[G * vectors];
       for (int g = 0; g < G; ++g)
         for (int v = 0; v < vectors; ++v) a[g * vectors + v] = hn::LoadU(D(), A + g * stride + i * group + v * lanes);
+      if (is_signed)
+        for (V& x_ : a) x_ = hn::Mul(x_, hn::Set(D(), sign[i]));
       for (int c = 0; c < W; ++c) {
         const V b = hn::Set(D(), B[i * group + c]);
         for (int v = 0; v < G * vectors; ++v) x[v][c] = hn::NegMulAdd(a[v], b, x[v][c]);
@@ -48,13 +52,14 @@ struct Tile {
     }
   }
   /// By the transpose of the triangle of the columns, whose first one is at B.
-  HWY_INLINE void SolveTriangle(const float* B, const float* inverse_diagonal) {
+  template <bool is_signed = false>
+  HWY_INLINE void SolveTriangle(const float* B, const float* inverse_diagonal, const float* sign = nullptr) {
     for (int c = 0; c < W; ++c) {
       for (int q = 0; q < c; ++q) {
-        const V b = hn::Set(D(), B[q * group + c]);
+        const V b = hn::Set(D(), is_signed ? sign[q] * B[q * group + c] : B[q * group + c]);
         for (int v = 0; v < G * vectors; ++v) x[v][c] = hn::NegMulAdd(x[v][q], b, x[v][c]);
       }
-      const V inverse = hn::Set(D(), inverse_diagonal[c]);
+      const V inverse = hn::Set(D(), is_signed ? sign[c] * inverse_diagonal[c] : inverse_diagonal[c]);
       for (int v = 0; v < G * vectors; ++v) x[v][c] = hn::Mul(x[v][c], inverse);
     }
   }
@@ -71,126 +76,158 @@ struct Tile {
 };
 
 /// Finishes the columns [j, j + W) in G groups of rows from A on.
-template <int G, int W>
+template <int G, int W, bool is_signed>
 HWY_INLINE void FinishGroups(const Front& f, const float* F, std::ptrdiff_t ld, std::ptrdiff_t j, float* A) {
   const std::ptrdiff_t stride = f.p * group;
   const float* B = f.L1 + j / group * stride + j % group;
   Tile<G, W> tile;
   tile.Load(F + j * ld, ld);
-  tile.Subtract(A, stride, B, j);
-  tile.SolveTriangle(B + j * group, f.inverse_diagonal + j);
+  tile.template Subtract<is_signed>(A, stride, B, j, f.sign);
+  tile.template SolveTriangle<is_signed>(B + j * group, f.inverse_diagonal + j, f.sign + j);
   tile.StoreGroups(A + j * group, stride);
 }
 
 /// Finishes the columns [j, j + W) in `groups` groups of rows.
-template <int W>
+template <int W, bool is_signed>
 HWY_INLINE void FinishStrip(const Front& f, const float* F, std::ptrdiff_t ld, std::ptrdiff_t j, float* A,
                             std::ptrdiff_t groups) {
   const std::ptrdiff_t stride = f.p * group;
   std::ptrdiff_t g = 0;
-  for (; g + highest <= groups; g += highest) FinishGroups<highest, W>(f, F + g * group, ld, j, A + g * stride);
-  for (; g < groups; ++g) FinishGroups<1, W>(f, F + g * group, ld, j, A + g * stride);
+  for (; g + highest <= groups; g += highest)
+    FinishGroups<highest, W, is_signed>(f, F + g * group, ld, j, A + g * stride);
+  for (; g < groups; ++g) FinishGroups<1, W, is_signed>(f, F + g * group, ld, j, A + g * stride);
 }
 
-/// The group of rows that holds the diagonal of the columns [j, j + W).
+/// The group of rows that holds the diagonal of the columns [j, j + W). Returns as factor_own().
 template <int W>
-bool FinishDiagonal(const Front& f, const float* F, std::ptrdiff_t ld, std::ptrdiff_t j) {
+int FinishDiagonal(const Front& f, const float* F, std::ptrdiff_t ld, std::ptrdiff_t j, bool has_negative) {
   const std::ptrdiff_t stride = f.p * group, g = j / group, first = j % group;
   float* A = f.L1 + g * stride;
   HWY_ALIGN float x[W * group];
   Tile<1, W> tile;
   tile.Load(F + j * ld + g * group, ld);
-  tile.Subtract(A, stride, A + first, j);
+  if (has_negative)
+    tile.template Subtract<true>(A, stride, A + first, j, f.sign);
+  else
+    tile.Subtract(A, stride, A + first, j);
   tile.Store(x, group);
-  constexpr float rounding = 1e-6F;
+  constexpr float rounding = 1e-6F, least_negative = 1e-3F;  // of the diagonal entry
+  int negative = 0;
   for (int c = 0; c < W; ++c) {
     const std::ptrdiff_t row = first + c;
     float* column = x + c * group;
     for (int q = 0; q < c; ++q) {
-      const float b = x[q * group + row];
+      const float b = f.sign[j + q] * x[q * group + row];
       for (std::ptrdiff_t i = row; i < group; ++i) column[i] -= x[q * group + i] * b;
     }
-    const float pivot = column[row];
-    if (!(pivot > rounding * std::abs(F[(j + c) * ld + g * group + row])) || !std::isfinite(pivot)) return false;
-    const float inverse = 1 / std::sqrt(pivot);
+    const float whole = f.diagonal[j + c], pivot = column[row];
+    if (!std::isfinite(pivot)) return -1;
+    const bool is_negative = pivot < rounding * whole;
+    const float inverse = 1 / std::sqrt(is_negative ? std::max(-pivot, least_negative * whole) : pivot);
     f.inverse_diagonal[j + c] = inverse;
+    f.sign[j + c] = is_negative ? -1 : 1;
+    negative += is_negative ? 1 : 0;
     for (std::ptrdiff_t i = 0; i <= row; ++i) column[i] = 0;
-    for (std::ptrdiff_t i = row + 1; i < group; ++i) column[i] *= inverse;
+    for (std::ptrdiff_t i = row + 1; i < group; ++i) column[i] *= f.sign[j + c] * inverse;
   }
   std::copy_n(x, W * group, A + j * group);
-  return true;
+  return negative;
 }
 
 template <int W>
-HWY_INLINE bool FinishOwnStrip(const Front& f, const float* F, std::ptrdiff_t ld, std::ptrdiff_t j) {
-  if (!FinishDiagonal<W>(f, F, ld, j)) return false;
-  const std::ptrdiff_t next = j / group + 1;
-  FinishStrip<W>(f, F + next * group, ld, j, f.L1 + next * f.p * group, whole_groups(f.p) / group - next);
+HWY_INLINE bool FinishOwnStrip(const Front& f, const float* F, std::ptrdiff_t ld, std::ptrdiff_t j, int& negative) {
+  const int here = FinishDiagonal<W>(f, F, ld, j, negative > 0);
+  if (here < 0) return false;
+  negative += here;
+  const std::ptrdiff_t next = j / group + 1, groups = whole_groups(f.p) / group - next;
+  float* A = f.L1 + next * f.p * group;
+  if (negative > 0)
+    FinishStrip<W, true>(f, F + next * group, ld, j, A, groups);
+  else
+    FinishStrip<W, false>(f, F + next * group, ld, j, A, groups);
   return true;
 }
 
-bool FactorOwn(const Front& f, const float* F, std::ptrdiff_t ld) {
+int FactorOwn(const Front& f, const float* F, std::ptrdiff_t ld) {
   std::ptrdiff_t j = 0;
+  int negative = 0;
   for (; j + widest <= f.p; j += widest)
-    if (!FinishOwnStrip<widest>(f, F, ld, j)) return false;
+    if (!FinishOwnStrip<widest>(f, F, ld, j, negative)) return -1;
   if constexpr (widest >= 8)
     for (; j + 4 <= f.p; j += 4)
-      if (!FinishOwnStrip<4>(f, F, ld, j)) return false;
+      if (!FinishOwnStrip<4>(f, F, ld, j, negative)) return -1;
   if constexpr (widest >= 4)
     for (; j + 2 <= f.p; j += 2)
-      if (!FinishOwnStrip<2>(f, F, ld, j)) return false;
+      if (!FinishOwnStrip<2>(f, F, ld, j, negative)) return -1;
   for (; j < f.p; ++j)
-    if (!FinishOwnStrip<1>(f, F, ld, j)) return false;
-  return true;
+    if (!FinishOwnStrip<1>(f, F, ld, j, negative)) return -1;
+  return negative;
 }
 
 /// All columns of G groups of rows.
-template <int G>
+template <int G, bool is_signed>
 HWY_INLINE void FinishRows(const Front& f, const float* F, std::ptrdiff_t ld, float* A) {
   std::ptrdiff_t j = 0;
-  for (; j + widest <= f.p; j += widest) FinishGroups<G, widest>(f, F, ld, j, A);
+  for (; j + widest <= f.p; j += widest) FinishGroups<G, widest, is_signed>(f, F, ld, j, A);
   if constexpr (widest >= 8)
-    for (; j + 4 <= f.p; j += 4) FinishGroups<G, 4>(f, F, ld, j, A);
+    for (; j + 4 <= f.p; j += 4) FinishGroups<G, 4, is_signed>(f, F, ld, j, A);
   if constexpr (widest >= 4)
-    for (; j + 2 <= f.p; j += 2) FinishGroups<G, 2>(f, F, ld, j, A);
-  for (; j < f.p; ++j) FinishGroups<G, 1>(f, F, ld, j, A);
+    for (; j + 2 <= f.p; j += 2) FinishGroups<G, 2, is_signed>(f, F, ld, j, A);
+  for (; j < f.p; ++j) FinishGroups<G, 1, is_signed>(f, F, ld, j, A);
 }
 
-void FactorBelow(const Front& f, const float* F, std::ptrdiff_t ld, std::ptrdiff_t begin, std::ptrdiff_t end) {
+template <bool is_signed>
+void FactorGroups(const Front& f, const float* F, std::ptrdiff_t ld, std::ptrdiff_t begin, std::ptrdiff_t end) {
   const float* rows = F + whole_groups(f.p);
   const std::ptrdiff_t stride = f.p * group;
   std::ptrdiff_t g = begin;
-  for (; g + highest <= end; g += highest) FinishRows<highest>(f, rows + g * group, ld, f.L2 + g * stride);
-  for (; g < end; ++g) FinishRows<1>(f, rows + g * group, ld, f.L2 + g * stride);
+  for (; g + highest <= end; g += highest) FinishRows<highest, is_signed>(f, rows + g * group, ld, f.L2 + g * stride);
+  for (; g < end; ++g) FinishRows<1, is_signed>(f, rows + g * group, ld, f.L2 + g * stride);
 }
 
-template <int G, int W>
+void FactorBelow(const Front& f, bool has_negative, const float* F, std::ptrdiff_t ld, std::ptrdiff_t begin,
+                 std::ptrdiff_t end) {
+  if (has_negative)
+    FactorGroups<true>(f, F, ld, begin, end);
+  else
+    FactorGroups<false>(f, F, ld, begin, end);
+}
+
+template <int G, int W, bool is_signed>
 HWY_INLINE void UpdateGroups(const Front& f, float* U, std::ptrdiff_t ld, std::ptrdiff_t j, std::ptrdiff_t g) {
   const std::ptrdiff_t stride = f.p * group;
   Tile<G, W> tile;
   float* at = U + j * ld + g * group;
   tile.Load(at, ld);
-  tile.Subtract(f.L2 + g * stride, stride, f.L2 + j / group * stride + j % group, f.p);
+  tile.template Subtract<is_signed>(f.L2 + g * stride, stride, f.L2 + j / group * stride + j % group, f.p, f.sign);
   tile.Store(at, ld);
 }
 
-template <int W>
+template <int W, bool is_signed>
 HWY_INLINE void UpdateStrip(const Front& f, float* U, std::ptrdiff_t ld, std::ptrdiff_t j) {
   const std::ptrdiff_t groups = ld / group;
   std::ptrdiff_t g = j / group;
-  for (; g + highest <= groups; g += highest) UpdateGroups<highest, W>(f, U, ld, j, g);
-  for (; g < groups; ++g) UpdateGroups<1, W>(f, U, ld, j, g);
+  for (; g + highest <= groups; g += highest) UpdateGroups<highest, W, is_signed>(f, U, ld, j, g);
+  for (; g < groups; ++g) UpdateGroups<1, W, is_signed>(f, U, ld, j, g);
 }
 
-void UpdateFront(const Front& f, float* U, std::ptrdiff_t begin, std::ptrdiff_t end) {
+template <bool is_signed>
+void UpdateColumns(const Front& f, float* U, std::ptrdiff_t begin, std::ptrdiff_t end) {
   const std::ptrdiff_t ld = whole_groups(f.r);
   std::ptrdiff_t j = begin;
-  for (; j + widest <= end; j += widest) UpdateStrip<widest>(f, U, ld, j);
+  for (; j + widest <= end; j += widest) UpdateStrip<widest, is_signed>(f, U, ld, j);
   if constexpr (widest >= 8)
-    for (; j + 4 <= end; j += 4) UpdateStrip<4>(f, U, ld, j);
+    for (; j + 4 <= end; j += 4) UpdateStrip<4, is_signed>(f, U, ld, j);
   if constexpr (widest >= 4)
-    for (; j + 2 <= end; j += 2) UpdateStrip<2>(f, U, ld, j);
-  for (; j < end; ++j) UpdateStrip<1>(f, U, ld, j);
+    for (; j + 2 <= end; j += 2) UpdateStrip<2, is_signed>(f, U, ld, j);
+  for (; j < end; ++j) UpdateStrip<1, is_signed>(f, U, ld, j);
+}
+
+void UpdateFront(const Front& f, bool has_negative, float* U, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  if (has_negative)
+    UpdateColumns<true>(f, U, begin, end);
+  else
+    UpdateColumns<false>(f, U, begin, end);
 }
 
 /// z <- z +- (G groups of A) y; `stride` floats from group to group of A.
@@ -314,7 +351,7 @@ void BackwardFront(const Front& f, int sides, float* y, const float* z) {
 }
 
 void FinishSparseRows(const Front& f, float* X) {
-  FinishRows<1>(f, X, group, X);
+  FinishRows<1, false>(f, X, group, X);
 }
 
 /// Columns [j, j + W) of M <- (M or 0) - X Y^T; B: the first column's row of Y.
@@ -370,14 +407,15 @@ HWY_EXPORT(SubtractGram);
 HWY_EXPORT(SubtractRowProducts);
 HWY_EXPORT(SubtractRows);
 
-bool factor_own(const Front& front, const float* F, std::ptrdiff_t ld) {
+int factor_own(const Front& front, const float* F, std::ptrdiff_t ld) {
   return HWY_DYNAMIC_DISPATCH(FactorOwn)(front, F, ld);
 }
-void factor_below(const Front& front, const float* F, std::ptrdiff_t ld, std::ptrdiff_t begin, std::ptrdiff_t end) {
-  HWY_DYNAMIC_DISPATCH(FactorBelow)(front, F, ld, begin, end);
+void factor_below(const Front& front, bool has_negative, const float* F, std::ptrdiff_t ld, std::ptrdiff_t begin,
+                  std::ptrdiff_t end) {
+  HWY_DYNAMIC_DISPATCH(FactorBelow)(front, has_negative, F, ld, begin, end);
 }
-void update_front(const Front& front, float* U, std::ptrdiff_t begin, std::ptrdiff_t end) {
-  HWY_DYNAMIC_DISPATCH(UpdateFront)(front, U, begin, end);
+void update_front(const Front& front, bool has_negative, float* U, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  HWY_DYNAMIC_DISPATCH(UpdateFront)(front, has_negative, U, begin, end);
 }
 void forward_front(const Front& front, int sides, float* y, float* z) {
   HWY_DYNAMIC_DISPATCH(ForwardFront)(front, sides, y, z);

@@ -23,15 +23,19 @@ struct Front {
   float* L1 = nullptr;                ///< whole_groups(p) x p
   float* L2 = nullptr;                ///< whole_groups(r) x p
   float* inverse_diagonal = nullptr;  ///< p
+  float* sign = nullptr;              ///< p: of the pivots, 1 or -1
+  const float* diagonal = nullptr;    ///< p: of the matrix, positive
 };
 
-/// Factorises the own rows of F (whole_groups(p) + whole_groups(r) rows, p columns; rows below start at a group).
-/// Returns false if a pivot is not positive.
-bool factor_own(const Front& front, const float* F, std::ptrdiff_t ld);
-/// L2 <- F2 L1^-T for the groups [begin, end) of rows below.
-void factor_below(const Front& front, const float* F, std::ptrdiff_t ld, std::ptrdiff_t begin, std::ptrdiff_t end);
-/// U <- U - L2 L2^T for the columns [begin, end), `begin` a multiple of 16; U: whole_groups(r) x r, lower triangle.
-void update_front(const Front& front, float* U, std::ptrdiff_t begin, std::ptrdiff_t end);
+/// Factorises the own rows of F (whole_groups(p) + whole_groups(r) rows, p columns; rows below start at a group) as L S
+/// L^T with signs S. Returns how many are negative, or -1 where something is not finite. The steps below are to know
+/// it.
+int factor_own(const Front& front, const float* F, std::ptrdiff_t ld);
+/// L2 <- F2 L1^-T S for the groups [begin, end) of rows below.
+void factor_below(const Front& front, bool has_negative, const float* F, std::ptrdiff_t ld, std::ptrdiff_t begin,
+                  std::ptrdiff_t end);
+/// U <- U - L2 S L2^T for the columns [begin, end), `begin` a multiple of 16; U: whole_groups(r) x r, lower triangle.
+void update_front(const Front& front, bool has_negative, float* U, std::ptrdiff_t begin, std::ptrdiff_t end);
 
 /// Most right-hand sides of one call.
 constexpr int most_sides = 4;
