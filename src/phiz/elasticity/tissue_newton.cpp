@@ -9,7 +9,7 @@
 
 #include "phiz/core/error.h"
 #include "phiz/elasticity/contact_step.h"
-#include "phiz/geometry/operators.h"
+#include "phiz/elasticity/static_residual.h"
 
 namespace phiz {
 
@@ -24,20 +24,6 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// Squared force that moves every vertex alone by a micrometre, n.
-VectorXd least_force2(const TissueBody& body) {
-  constexpr double micrometre = 1e-6;
-  const TetRest rest = tet_rest(body.rest, body.tets);
-  VectorXd stiffness = VectorXd::Zero(body.rest.rows());
-  for (Eigen::Index t = 0; t < body.tets.rows(); ++t) {
-    const auto s = static_cast<std::size_t>(t);
-    const Eigen::Matrix<double, 3, 4> hats = hat_gradients(rest.inverse_edges[s]);
-    for (int k = 0; k < 4; ++k)
-      stiffness[body.tets(t, k)] += 2 * body.moduli[s].mu * rest.volume[t] * hats.col(k).squaredNorm();
-  }
-  return (micrometre * stiffness).array().square();
-}
-
 class StaticSolve {
  public:
   StaticSolve(const TissueEnergy& energy, MatrixX3d& x, const NewtonStaticOptions& options, ContactScene* contacts)
@@ -46,7 +32,7 @@ class StaticSolve {
         contacts_(contacts),
         x_(x),
         reference_(options.friction_reference.rows() > 0 ? options.friction_reference : x),
-        least_force2_(least_force2(energy.body())),
+        force_scale_(energy.body()),
         step_(energy) {}
 
   SolveStatistics run(std::vector<ContactForce>* forces) {
@@ -86,7 +72,7 @@ class StaticSolve {
   ContactScene* contacts_;
   MatrixX3d& x_;
   MatrixX3d reference_;
-  VectorXd least_force2_;
+  ForceScale force_scale_;
   ContactStep step_;
   ContactPlanes planes_;
   MatrixX3d detected_at_;
@@ -167,13 +153,7 @@ ContactState StaticSolve::evaluate(double& scale) const {
   state.gradient = state.motion.reduced(energy_.gradient(x_, &magnitude));
   state.separation = planes_.separation(x_);
   state.derivative = planes_.derivative(state.motion);
-  double scale2 = 0, least2 = 0;
-  for (Eigen::Index v = 0; v < magnitude.size(); ++v) {
-    if (state.motion.first(v) < 0) continue;
-    scale2 += magnitude[v] * magnitude[v];
-    least2 += least_force2_[v];
-  }
-  scale = std::sqrt(std::max(scale2, least2));
+  scale = force_scale_(state.motion, magnitude);
   return state;
 }
 
