@@ -326,6 +326,49 @@ TEST(TissueContact, FrictionHoldsAPressedBlockUpToItsLimitAndSlidingOpposesTheMo
   }
 }
 
+TEST(TissueContact, ASqueezeThatCannotBeIsReported) {
+  // Two plates whose gap is turned inside out.
+  TissueBody body = block();
+  ContactScene contacts(body.rest.rows());
+  const int below = contacts.add_rigid(rigid_box({-0.1, -0.05, -0.1}, {0.2, 0, 0.2}));
+  const int above = contacts.add_rigid(rigid_box({-0.1, 0, -0.1}, {0.2, 0.05, 0.2}));
+  contacts.place(above, Eigen::Isometry3d(Eigen::Translation3d(0, breadth, 0)));
+  const VectorXi outside = vertices_where(body, [](const Vector3d& p) { return p.y() == breadth; });
+  contacts.add_pair(outside, below, -1, body.rest);
+  contacts.add_pair(outside, above, -1, flatter(body));
+  contacts.place(below, Eigen::Isometry3d(Eigen::Translation3d(0, breadth, 0)));
+  contacts.place(above, Eigen::Isometry3d(Eigen::Translation3d(0, breadth - 0.002, 0)));
+  pin(body, [](const Vector3d& p) { return p.y() == 0; });
+  const TissueEnergy energy(body);
+  NewtonStaticOptions options;
+  options.max_iterations = 30;
+  const Solved solved = solve(energy, body.rest, &contacts, options);
+  EXPECT_FALSE(solved.statistics.converged);
+  EXPECT_TRUE(solved.x.allFinite());
+  EXPECT_GT(solved.statistics.penetration, 1e-4);
+}
+
+TEST(TissueContact, PinnedVerticesAreLeftWhereTheyAre) {
+  TissueBody body = block();
+  pin(body, [](const Vector3d& p) { return p.y() == 0 || (p.y() == breadth && p.x() == 0); });
+  ContactScene contacts(body.rest.rows());
+  const int plate = contacts.add_rigid(rigid_box({-0.1, breadth, -0.1}, {0.2, 0.1, 0.2}));
+  contacts.add_pair(vertices_where(body, [](const Vector3d& p) { return p.y() == breadth; }), plate, -1, flatter(body));
+  contacts.place(plate, Eigen::Isometry3d(Eigen::Translation3d(0, -0.001, 0)));
+  const TissueEnergy energy(body);
+  const Solved solved = solve(energy, body.rest, &contacts);
+  EXPECT_LT(solved.statistics.residual, 1e-8);
+  EXPECT_FALSE(solved.statistics.converged) << "the pins are inside";
+  EXPECT_NEAR(solved.statistics.penetration, 0.001, 1e-9);
+  for (Eigen::Index v = 0; v < body.rest.rows(); ++v) {
+    if (body.pinned[static_cast<std::size_t>(v)] != 0) {
+      EXPECT_EQ((solved.x.row(v) - body.rest.row(v)).norm(), 0);
+    } else {
+      EXPECT_LT(solved.x(v, 1), breadth - 0.001 + 1e-9);
+    }
+  }
+}
+
 TEST(TissueContact, SenselessOptionsAreRefused) {
   const TissueEnergy energy(block());
   MatrixX3d x = energy.body().rest;

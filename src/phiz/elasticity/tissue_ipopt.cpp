@@ -366,6 +366,7 @@ SolveStatistics solve_static_with_ipopt(const TissueEnergy& energy, MatrixX3d& x
   statistics.contacts = static_cast<int>(std::count_if(
       pushing.begin(), pushing.end(), [most](const ContactForce& force) { return force.pressure > 1e-6 * most; }));
   statistics.energy = energy.value(x);
+  statistics.volume_change = tet_volumes(x, body.tets).sum() / tet_volumes(body.rest, body.tets).sum() - 1;
   statistics.milliseconds = milliseconds_since(start);
   if (forces != nullptr) *forces = pushing;
   return statistics;

@@ -10,6 +10,7 @@
 #include "phiz/core/error.h"
 #include "phiz/elasticity/contact_step.h"
 #include "phiz/elasticity/static_residual.h"
+#include "phiz/geometry/operators.h"
 
 namespace phiz {
 
@@ -43,6 +44,8 @@ class StaticSolve {
       alternate();
     }
     statistics_.energy = value_;
+    const TissueBody& body = energy_.body();
+    statistics_.volume_change = tet_volumes(x_, body.tets).sum() / tet_volumes(body.rest, body.tets).sum() - 1;
     statistics_.milliseconds = milliseconds_since(start_);
     if (forces != nullptr) *forces = pushing(planes_.separation(x_));
     return statistics_;
@@ -134,6 +137,8 @@ void StaticSolve::alternate() {
                             longest <= options_.state_tolerance &&
                             statistics_.penetration <= options_.penetration_tolerance;
     if (statistics_.converged || statistics_.iterations >= options_.max_iterations) return;
+    // The same planes would be found again: what is too deep is pinned there.
+    if (solved && loose <= options_.residual_tolerance && longest == 0) return;
     // Where planes and states call each other in a circle, the states between them are nearer to the solution.
     if (round_ > 2 && move.cwiseProduct(last_move).sum() < turning_back * move.norm() * last_move.norm())
       share = std::max(least_share, 0.6 * share);
