@@ -267,9 +267,10 @@ void set_options(Ipopt::OptionsList& list, const IpoptStaticOptions& options) {
   list.SetStringValue("jac_d_constant", "yes");
   list.SetNumericValue("bound_relax_factor", 0);
   list.SetIntegerValue("acceptable_iter", 0);
-  for (const char* name : {"warm_start_bound_push", "warm_start_bound_frac", "warm_start_slack_bound_push",
-                           "warm_start_slack_bound_frac", "warm_start_mult_bound_push"})
-    list.SetNumericValue(name, 1e-9);
+  list.SetNumericValue("warm_start_mult_bound_push", 1e-9);
+  // A slack s is pushed with warm_barrier / s: not more than contact forces, which are near 1 in our units.
+  list.SetNumericValue("warm_start_slack_bound_push", 10 * options.warm_barrier);
+  list.SetNumericValue("warm_start_slack_bound_frac", 10 * options.warm_barrier);
 }
 
 /// Pressures of the contacts that were there before.
