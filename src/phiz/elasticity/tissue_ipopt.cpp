@@ -268,9 +268,6 @@ void set_options(Ipopt::OptionsList& list, const IpoptStaticOptions& options) {
   list.SetNumericValue("bound_relax_factor", 0);
   list.SetIntegerValue("acceptable_iter", 0);
   list.SetNumericValue("warm_start_mult_bound_push", 1e-9);
-  // A slack s is pushed with warm_barrier / s: not more than contact forces, which are near 1 in our units.
-  list.SetNumericValue("warm_start_slack_bound_push", 10 * options.warm_barrier);
-  list.SetNumericValue("warm_start_slack_bound_frac", 10 * options.warm_barrier);
 }
 
 /// Pressures of the contacts that were there before.
@@ -328,6 +325,8 @@ SolveStatistics solve_static_with_ipopt(const TissueEnergy& energy, MatrixX3d& x
   VectorXd magnitude;
   energy.gradient(x, &magnitude);
   double scale = force_scale(motion, magnitude), digits = 1;
+  constexpr double least_barrier = 1e-10;
+  double barrier = options.warm_barrier;
   std::vector<ContactForce> pushing;
   for (int round = 0; round < options.max_rounds; ++round) {
     const ContactPlanes planes(contacts != nullptr ? detect_afresh(*contacts, x) : std::vector<ContactRow>(), motion, x,
@@ -336,7 +335,11 @@ SolveStatistics solve_static_with_ipopt(const TissueEnergy& energy, MatrixX3d& x
     const double loose = contacts == nullptr || round > 1 ? 0 : round == 0 ? 1e-3 : 1e-5;
     application->Options()->SetNumericValue("tol", std::max(loose, digits * options.residual_tolerance));
     application->Options()->SetStringValue("warm_start_init_point", warm ? "yes" : "no");
-    application->Options()->SetNumericValue("mu_init", warm ? options.warm_barrier : 0.1);
+    application->Options()->SetNumericValue("mu_init", warm ? barrier : 0.1);
+    // A slack s is pushed with barrier / s: not more than contact forces, which are near 1 in our units.
+    for (const char* name : {"warm_start_slack_bound_push", "warm_start_slack_bound_frac"})
+      application->Options()->SetNumericValue(name, 10 * barrier);
+    if (warm) barrier = std::max(least_barrier, 0.01 * barrier);
     program->start(x, planes, carried_over(pushing, planes), scale / std::sqrt(static_cast<double>(motion.size())));
     program->report_to(options.trace, round, start);
     application->OptimizeTNLP(program);

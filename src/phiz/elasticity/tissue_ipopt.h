@@ -23,7 +23,8 @@ struct IpoptStaticOptions {
   std::string linear_solver = "mumps";  ///< the one that Debian's build holds
   /// Order of elimination in MUMPS: 0 AMD, 3 SCOTCH, 4 PORD, 6 QAMD, 7 automatic.
   int mumps_pivot_order = 7;
-  /// Weight of the barrier when multipliers of the round before are at hand.
+  /// Weight of the barrier that the second round starts with; every later one starts with a hundredth of the one
+  /// before.
   double warm_barrier = 1e-6;
   Trace* trace = nullptr;  ///< gets an entry per iteration
 };
