@@ -26,7 +26,8 @@ struct IpoptStaticOptions {
   /// Weight of the barrier that the second round starts with; every later one starts with a hundredth of the one
   /// before.
   double warm_barrier = 1e-6;
-  Trace* trace = nullptr;  ///< gets an entry per iteration
+  Trace* trace =
+      nullptr;  ///< gets an entry per iteration; its residual is IPOPT's own, of about our scale, its contacts are 0
 };
 
 /// Minimises the energy from and to x under contact without friction, like solve_static(). Sliding on a plane is
