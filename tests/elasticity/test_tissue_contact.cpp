@@ -217,6 +217,23 @@ TEST(TissueContact, TwoSoftBlocksMeetAndPushEachOtherWithOppositeForces) {
   EXPECT_LT(below.y(), 0);
 }
 
+TEST(TissueContact, RoundsOfPlanesSettleToAsManyDigitsAsAreAskedFor) {
+  const Lips lips;
+  const TissueEnergy energy(lips.body);
+  ContactScene contacts = lips.scene();
+  const MatrixX3d start = lips.pressed(lips.body.rest, 1.5e-3, 4e-4);
+  const Solved usual = solve(energy, start, &contacts);
+  NewtonStaticOptions options;
+  options.state_tolerance = 1e-11;
+  const Solved strict = solve(energy, start, &contacts, options);
+  EXPECT_TRUE(strict.statistics.converged) << brief_report(strict.statistics);
+  EXPECT_LT((usual.x - strict.x).cwiseAbs().maxCoeff(), 3 * NewtonStaticOptions().state_tolerance);
+  EXPECT_LT(contacts.penetration(strict.x), 1e-11);
+  // From there nothing is left to do.
+  const Solved again = solve(energy, strict.x, &contacts, options);
+  EXPECT_LT((again.x - strict.x).cwiseAbs().maxCoeff(), 1e-10);
+}
+
 TEST(TissueContact, TheEnergyFallsAndTheTraceSaysHow) {
   const Lips lips;
   ContactScene contacts = lips.scene();

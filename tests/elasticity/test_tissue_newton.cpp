@@ -69,6 +69,7 @@ TEST(Statics, AFreeBlockTakesTheStretchOfItsActivation) {
     energy.set_activation(everywhere(body, S));
     MatrixX3d x = body.rest;
     const SolveStatistics statistics = solve_static(energy, x);
+    EXPECT_TRUE(statistics.converged) << brief_report(statistics);
     EXPECT_LT(statistics.energy, 1e-15) << mode;
     EXPECT_LT(distance_from_stretch(body, x, S), 1e-6) << mode;
     EXPECT_NEAR(total_volume(body, x) / (length * breadth * depth), S.determinant(), 1e-6);
@@ -81,6 +82,7 @@ TEST(Statics, GrowthOfAFreeBlockIsFreeOfStress) {
   const TissueEnergy energy(body);
   MatrixX3d x = body.rest;
   const SolveStatistics statistics = solve_static(energy, x);
+  EXPECT_TRUE(statistics.converged) << brief_report(statistics);
   EXPECT_LT(statistics.energy, 1e-15);
   EXPECT_NEAR(total_volume(body, x) / (length * breadth * depth), std::pow(1.25, 3), 1e-6);
 }
@@ -216,7 +218,8 @@ TEST(Statics, ScrambledAndFlattenedBlocksRecover) {
     for (Eigen::Index v = 0; v < x.rows(); ++v)
       if (body.pinned[static_cast<std::size_t>(v)]) x.row(v) = body.rest.row(v);
     const SolveStatistics statistics = solve_static(energy, x);
-    EXPECT_LT(statistics.energy, 1e-12) << trial << ": " << brief_report(statistics);
+    EXPECT_TRUE(statistics.converged) << trial << ": " << brief_report(statistics);
+    EXPECT_LT(statistics.energy, 1e-12) << trial;
     EXPECT_LT((x - body.rest).cwiseAbs().maxCoeff(), 1e-6) << trial;
   }
 }

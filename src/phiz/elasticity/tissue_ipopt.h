@@ -26,8 +26,8 @@ struct IpoptStaticOptions {
   /// Weight of the barrier that the second round starts with; every later one starts with a hundredth of the one
   /// before.
   double warm_barrier = 1e-6;
-  Trace* trace =
-      nullptr;  ///< gets an entry per iteration; its residual is IPOPT's own, of about our scale, its contacts are 0
+  /// Gets an entry per iteration; the residual in it is IPOPT's own, of about our scale, contacts are not counted.
+  Trace* trace = nullptr;
 };
 
 /// Minimises the energy from and to x under contact without friction, like solve_static(). Sliding on a plane is

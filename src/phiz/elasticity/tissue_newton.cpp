@@ -34,7 +34,14 @@ class StaticSolve {
         x_(x),
         reference_(options.friction_reference.rows() > 0 ? options.friction_reference : x),
         force_scale_(energy.body()),
-        step_(energy) {}
+        step_(energy) {
+    // Laws are differences of numbers of the size of the moduli.
+    const VectorXd volume = tet_volumes(energy.body().rest, energy.body().tets);
+    for (Eigen::Index t = 0; t < volume.size(); ++t) {
+      const Moduli& moduli = energy.body().moduli[static_cast<std::size_t>(t)];
+      energy_rounding_ += 2e-16 * volume[t] * (moduli.mu + moduli.lambda);
+    }
+  }
 
   SolveStatistics run(std::vector<ContactForce>* forces) {
     value_ = energy_.value(x_);
@@ -76,6 +83,7 @@ class StaticSolve {
   MatrixX3d& x_;
   MatrixX3d reference_;
   ForceScale force_scale_;
+  double energy_rounding_ = 0;  ///< joules
   ContactStep step_;
   ContactPlanes planes_;
   MatrixX3d detected_at_;
@@ -198,7 +206,8 @@ double StaticSolve::search(const ContactState& state, const VectorXd& p, double&
   const double slope = std::min(0.0, state.gradient.dot(p) + contact_merit(linear) - contact_merit(state.separation));
   // Near the solution rounding hides the decrease.
   const double weight = std::abs(energy_.mass().dot(x_ * energy_.body().gravity));
-  const double rounding = 1e-14 * (std::abs(value_) + weight) + 1e-15 * penalty_ * static_cast<double>(forces_.cols());
+  const double rounding =
+      1e-14 * (std::abs(value_) + weight) + energy_rounding_ + 1e-15 * penalty_ * static_cast<double>(forces_.cols());
   double alpha = std::min(1.0, longest_step() / std::max(longest, 1e-300));
   for (int halving = 0; halving < 40; ++halving, alpha *= 0.5) {
     MatrixX3d trial = x_ + alpha * move;
