@@ -246,6 +246,10 @@ double ContactScene::penetration(const MatrixX3d& x) const {
   return penetration(PositionView{rows.data(), 3, nullptr});
 }
 
+const ContactOptions& ContactScene::options() const {
+  return state_->options;
+}
+
 int ContactScene::left_out() const {
   return state_->left_out;
 }

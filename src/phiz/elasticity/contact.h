@@ -77,6 +77,7 @@ class ContactScene {
   double penetration(const PositionView& positions) const;
   double penetration(const MatrixX3d& x) const;
 
+  const ContactOptions& options() const;
   /// Vertices left out because they are inside of their obstacle in the rest state.
   int left_out() const;
 
