@@ -109,6 +109,8 @@ TEST(Activation, OfAParalysedMuscleIsNeutral) {
 TEST(Activation, RefusesWhatIsMalformed) {
   EXPECT_THROW(ActivationBlender(shapes(), tissue()).blend(VectorXd::Ones(2)), Error);
   EXPECT_THROW(ActivationBlender(shapes(), tissue()).blend(weights(0, std::nan(""), 0)), Error);
+  EXPECT_THROW(ActivationBlender(shapes(), tissue()).blend(weights(0, 1e300, 0)), Error);
+  EXPECT_THROW(blend_jaw(model().head.jaw, shapes(), VectorXd::Ones(2)), Error);
   auto broken = shapes();
   broken[1].change.conservativeResize(3, 6);
   EXPECT_THROW(ActivationBlender(broken, tissue()), Error);

@@ -19,6 +19,12 @@ constexpr double least_weight = 1e-5;
 
 using Change = std::array<float, 6>;
 
+void require_weights(const VectorXd& weights, std::size_t shapes) {
+  constexpr double most = 1e6;
+  if (weights.size() != static_cast<Eigen::Index>(shapes) || !(weights.array().abs() <= most).all())
+    reject("activation", "needs one weight per shape, none larger than a million");
+}
+
 /// I + change, with eigenvalues within the bounds.
 Matrix3d bounded_stretch(const Change& c) {
   Matrix3d S;
@@ -53,6 +59,7 @@ std::vector<ActivationShape> estimate_activations(const FaceModel& model, const 
 }
 
 JawPose blend_jaw(const JawJoint& joint, const std::vector<ActivationShape>& shapes, const VectorXd& weights) {
+  require_weights(weights, shapes.size());
   JawPose pose = JawPose::Zero();
   for (std::size_t j = 0; j < shapes.size(); ++j) pose += weights[static_cast<Eigen::Index>(j)] * shapes[j].jaw;
   return clamp_to_limits(joint, pose);
@@ -90,8 +97,7 @@ std::vector<Matrix3d> ActivationBlender::blend(const VectorXd& weights) const {
 }
 
 void ActivationBlender::blend(const VectorXd& weights, std::vector<Matrix3d>& stretches) const {
-  if (weights.size() != static_cast<Eigen::Index>(pieces_.size()) || !weights.allFinite())
-    reject("activation", "needs one finite weight per shape");
+  require_weights(weights, pieces_.size());
   if (stretches.size() != tets_) reject("activation", "needs a stretch for every tet of the tissue");
   const auto chunks = static_cast<std::ptrdiff_t>((active_.size() + chunk - 1) / chunk);
   parallel_for(

@@ -27,7 +27,8 @@ constexpr double least_activation = 0.25, most_activation = 4;
 /// expressions come out weaker, and what is no muscle's work (air in the cheeks, the tongue) is missing.
 std::vector<ActivationShape> estimate_activations(const FaceModel& model, const HeadTissue& tissue);
 
-/// Pose of the jaw, b(w) = sum w_j b_j within the limits of the joint. `weights`: one per shape.
+/// Pose of the jaw, b(w) = sum w_j b_j within the limits of the joint. `weights`: one per shape, else it throws as
+/// blend() does.
 JawPose blend_jaw(const JawJoint& joint, const std::vector<ActivationShape>& shapes, const VectorXd& weights);
 
 /// a(w) = a_neut + sum w_j (a_j - a_neut) of all tets at once.
@@ -39,7 +40,7 @@ class ActivationBlender {
 
   /// The stretch of every tet of the tissue's body, as TissueEnergy::set_activation takes it; I where there is no
   /// muscle. Symmetric and positive: eigenvalues outside of the bounds above are brought back to them. Throws
-  /// phiz::Error(bad_input) unless there is one finite weight per shape.
+  /// phiz::Error(bad_input) unless there is one weight per shape, none beyond a million.
   std::vector<Matrix3d> blend(const VectorXd& weights) const;
   /// The same into a vector of that size whose other tets are left alone.
   void blend(const VectorXd& weights, std::vector<Matrix3d>& stretches) const;

@@ -61,8 +61,7 @@ std::vector<Calibration> calibrate_activations(const FaceModel& model, const Hea
       result.reached = product(area, first, goal) / size;
       result.error = std::sqrt(product(area, miss, miss) / size);
     }
-    if (size > 0 && shapes[j].jaw.isZero()) {
-      solve_at(options.probe);
+    if (size > 0 && shapes[j].jaw.isZero() && result.statistics.converged && solve_at(options.probe).converged) {
       const MatrixX3d rate = (x - head.volume.V - first) / (options.probe - 1);
       const double step = product(area, rate, miss) / (product(area, rate, rate) + options.towards_one * size);
       result.gain = std::clamp(1 + step, options.least, options.most);

@@ -28,9 +28,9 @@ struct CalibrationOptions {
 /// Multiplies the change of every shape by a gain. The static states at gain 1 and at the probe (neither contact nor
 /// weight) give the skin as a linear function of the gain; the gain is the one whose skin is nearest to that of the
 /// volumetric shape, weighted by area. Shapes that move the jaw keep gain 1: there the muscles' share in the motion is
-/// too small to tell. mouthClose is tried on top of jawOpen, for which it is made. `shapes` are those of the model, in
-/// its order, as estimate_activations() makes them. Takes two static solves per shape. Throws phiz::Error for models
-/// whose shapes have no displacement.
+/// too small to tell; so do shapes whose solve fails. mouthClose is tried on top of jawOpen, for which it is made.
+/// `shapes` are those of the model, in its order, as estimate_activations() makes them. Takes two static solves per
+/// shape. Throws phiz::Error for models whose shapes have no displacement.
 std::vector<Calibration> calibrate_activations(const FaceModel& model, const HeadTissue& tissue,
                                                std::vector<ActivationShape>& shapes,
                                                const CalibrationOptions& options = {});
