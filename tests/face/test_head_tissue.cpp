@@ -4,10 +4,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "anatomy/preview_head.h"
 #include "phiz/core/error.h"
 #include "phiz/elasticity/tissue_newton.h"
+#include "phiz/face/activation.h"
 #include "phiz/face/bone_slides.h"
 #include "phiz/face/head_tissue.h"
 #include "phiz/geometry/topology.h"
@@ -66,11 +69,14 @@ TEST(HeadTissue, IsWhatTheHeadIsMadeOf) {
 
 TEST(HeadTissue, StifferMuscleIsTheMixtureOfBothLaws) {
   TissueOptions options;
+  options.muscle_stiffness = 1;
+  const TissueBody plain = head_tissue(preview_head(), options).body;
+  EXPECT_EQ(plain.active, tissue().muscle);
   options.muscle_stiffness = 5;
   const TissueBody stiff = head_tissue(preview_head(), options).body;
   for (std::size_t t = 0; t < stiff.moduli.size(); ++t) {
     const auto i = static_cast<Eigen::Index>(t);
-    const double f = tissue().muscle[i], E = tissue().body.moduli[t].mu;
+    const double f = tissue().muscle[i], E = plain.moduli[t].mu;
     EXPECT_NEAR(stiff.moduli[t].mu * stiff.active[i], 5 * f * E, 1e-9 * E);
     EXPECT_NEAR(stiff.moduli[t].mu * (1 - stiff.active[i]), (1 - f) * E, 1e-9 * E);
   }
@@ -178,6 +184,82 @@ TEST(HeadTissue, IsInBalanceAtRest) {
   VectorXd magnitude;
   const MatrixX3d force = energy.gradient(tissue().body.rest, &magnitude);
   EXPECT_LT(force.rowwise().norm().maxCoeff(), 1e-9);
+}
+
+/// Muscles of these names shorten to 0.7 along their fibres.
+std::vector<Matrix3d> contracted(const std::vector<std::string>& names) {
+  const HeadTemplate& head = preview_head();
+  std::vector<Matrix3d> all(static_cast<std::size_t>(head.volume.T.rows()), Matrix3d::Identity());
+  for (const Muscle& muscle : head.muscles) {
+    if (std::find(names.begin(), names.end(), muscle.name) == names.end()) continue;
+    for (Eigen::Index i = 0; i < muscle.tets.size(); ++i)
+      all[static_cast<std::size_t>(muscle.tets[i])] = fibre_stretch(muscle.direction.row(i), 0.7);
+  }
+  std::vector<Matrix3d> soft;
+  for (const int t : tissue().soft) soft.push_back(all[static_cast<std::size_t>(t)]);
+  return soft;
+}
+
+struct State {
+  MatrixX3d moved;  ///< displacement of the vertices
+  SolveStatistics statistics;
+};
+State solve(const std::vector<Matrix3d>& stretches, const JawPose& pose = JawPose::Zero()) {
+  TissueEnergy energy(tissue().body);
+  energy.set_activation(stretches);
+  MatrixX3d x = tissue().body.rest;
+  place_jaw(preview_head(), tissue(), pose, energy, x);
+  const SolveStatistics statistics = solve_static(energy, x);
+  return {x - tissue().body.rest, statistics};
+}
+
+/// Displacement of a corner of the mouth, left or right.
+Vector3d corner(const State& state, bool left) {
+  const HeadTemplate& head = preview_head();
+  for (const Landmark& landmark : head.landmarks)
+    if (landmark.name == (left ? "54" : "48"))
+      return (head.skin_interpolation.row(landmark.skin_vertex) * state.moved(head.skin_vertices, Eigen::all))
+          .transpose();
+  return Vector3d::Zero();
+}
+
+TEST(HeadTissue, ZygomaticusPullsTheCornerOfTheMouthUpAndOut) {
+  const State smile = solve(contracted({"zygomaticusMajorLeft", "zygomaticusMajorRight"}));
+  EXPECT_TRUE(smile.statistics.converged);
+  EXPECT_LE(smile.statistics.residual, 1e-8);
+  EXPECT_GT(corner(smile, true).x(), 2e-4);
+  EXPECT_GT(corner(smile, true).y(), 5e-4);
+  EXPECT_LT(corner(smile, true).z(), 0);
+}
+
+TEST(HeadTissue, ParalysisOfOneSideLeavesTheOtherItsMotion) {
+  const HeadTemplate& head = preview_head();
+  VectorXd gain = VectorXd::Ones(static_cast<Eigen::Index>(head.muscles.size()));
+  for (std::size_t m = 0; m < head.muscles.size(); ++m)
+    if (head.muscles[m].name.ends_with("Right")) gain[static_cast<Eigen::Index>(m)] = 0;
+  std::vector<Matrix3d> stretches = contracted({"zygomaticusMajorLeft", "zygomaticusMajorRight"});
+  scale_activation(innervation(head, tissue(), gain), stretches);
+  const State half = solve(stretches);
+  EXPECT_GT(corner(half, true).norm(), 5 * corner(half, false).norm());
+}
+
+TEST(HeadTissue, MirroredActivationGivesTheMirroredExpression) {
+  const Vector3d left = corner(solve(contracted({"zygomaticusMajorLeft", "levatorLabiiSuperiorisLeft"})), true);
+  const Vector3d right = corner(solve(contracted({"zygomaticusMajorRight", "levatorLabiiSuperiorisRight"})), false);
+  // The head is symmetric, its tets are not.
+  EXPECT_LT((left - Vector3d(-right.x(), right.y(), right.z())).norm(), 0.2 * left.norm());
+}
+
+TEST(HeadTissue, SlidesOnTheJawThatOpens) {
+  const State open = solve(contracted({}), (JawPose() << 0.25, 0, 0, 0, 0).finished());
+  EXPECT_TRUE(open.statistics.converged);
+  double slipped = 0;
+  for (const Slide& slide : place_slides(preview_head(), tissue().body, (JawPose() << 0.25, 0, 0, 0, 0).finished())) {
+    const Vector3d x = tissue().body.rest.row(slide.vertex) + open.moved.row(slide.vertex);
+    EXPECT_NEAR(slide.height(x), 0, 1e-12);
+    slipped = std::max(slipped, (x - slide.point).norm());
+  }
+  EXPECT_GT(slipped, 1e-3);
 }
 
 }  // namespace

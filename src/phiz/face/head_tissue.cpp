@@ -71,6 +71,12 @@ std::vector<Slide> place_slides(const HeadTemplate& head, const TissueBody& body
   return slides;
 }
 
+void place_jaw(const HeadTemplate& head, const HeadTissue& tissue, const JawPose& pose, TissueEnergy& energy,
+               MatrixX3d& x) {
+  place_pins(head, tissue.body, pose, x);
+  energy.set_slides(place_slides(head, tissue.body, pose));
+}
+
 Eigen::Matrix<double, 3, 5> pin_rate(const HeadTemplate& head, int vertex, const JawPose& pose) {
   if (head.carrier[vertex] != static_cast<int>(Carrier::mandible)) return Eigen::Matrix<double, 3, 5>::Zero();
   return jaw_jacobian(head.jaw, pose, head.volume.V.row(vertex));

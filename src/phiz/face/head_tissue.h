@@ -12,8 +12,9 @@ namespace phiz {
 struct TissueOptions {
   double shear_scale = 3000;  ///< E0, pascals: what mu = 1 stands for
   double mu = 1, lambda = 3;  ///< multiples of E0 (phace.md section 11)
-  /// How many times stiffer muscle is than passive tissue: both moduli of its law.
-  double muscle_stiffness = 1;
+  /// How many times stiffer muscle is than passive tissue. A muscle that contracts reaches tens of kilopascals where
+  /// fat has a few; at 1 passive tissue takes more than half of most expressions away.
+  double muscle_stiffness = 10;
   double density = 1000;                ///< kg/m^3
   Vector3d gravity = Vector3d::Zero();  ///< m/s^2, head frame
   PassiveLaw passive = PassiveLaw::corotated;
@@ -36,6 +37,9 @@ HeadTissue head_tissue(const HeadTemplate& head, const TissueOptions& options = 
 void place_pins(const HeadTemplate& head, const TissueBody& body, const JawPose& pose, MatrixX3d& x);
 /// The slides of the body (rest pose) in a pose of the jaw, in the same order.
 std::vector<Slide> place_slides(const HeadTemplate& head, const TissueBody& body, const JawPose& pose);
+/// Both, for a solve in that pose: pins in x, slides in the energy of tissue.body.
+void place_jaw(const HeadTemplate& head, const HeadTissue& tissue, const JawPose& pose, TissueEnergy& energy,
+               MatrixX3d& x);
 /// Derivative of the place of a vertex of bone by the pose: zero for what the mandible does not carry.
 Eigen::Matrix<double, 3, 5> pin_rate(const HeadTemplate& head, int vertex, const JawPose& pose);
 

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "phiz/face/activation.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "phiz/core/error.h"
+#include "phiz/core/parallel.h"
+#include "phiz/face/flesh.h"
+
+namespace phiz {
+
+namespace {
+
+constexpr std::size_t chunk = 512;  ///< active tets that are blended together
+constexpr double least_weight = 1e-5;
+
+using Change = std::array<float, 6>;
+
+void require_weights(const VectorXd& weights, std::size_t shapes) {
+  constexpr double most = 1e6;
+  if (weights.size() != static_cast<Eigen::Index>(shapes) || !(weights.array().abs() <= most).all())
+    reject("activation", "needs one weight per shape, none larger than a million");
+}
+
+/// I + change, with eigenvalues within the bounds.
+Matrix3d bounded_stretch(const Change& c) {
+  Matrix3d S;
+  S << 1 + c[0], c[3], c[4], c[3], 1 + c[1], c[5], c[4], c[5], 1 + c[2];
+  const double square = (S - Matrix3d::Identity()).squaredNorm();
+  constexpr double safe = 1 - least_activation;  // no eigenvalue is farther from 1 than the norm
+  static_assert(safe < most_activation - 1);
+  if (square <= safe * safe) return S;
+  Eigen::SelfAdjointEigenSolver<Matrix3d> eigen;
+  eigen.computeDirect(S);
+  const Vector3d& s = eigen.eigenvalues();
+  if (s[0] >= least_activation && s[2] <= most_activation) return S;
+  const Vector3d bounded = s.cwiseMax(least_activation).cwiseMin(most_activation);
+  const Matrix3d out = eigen.eigenvectors() * bounded.asDiagonal() * eigen.eigenvectors().transpose();
+  return 0.5 * (out + out.transpose());
+}
+
+}  // namespace
+
+std::vector<ActivationShape> estimate_activations(const FaceModel& model, const HeadTissue& tissue) {
+  std::vector<char> active(static_cast<std::size_t>(model.head.volume.T.rows()), 0);
+  for (Eigen::Index t = 0; t < tissue.soft.size(); ++t)
+    active[static_cast<std::size_t>(tissue.soft[t])] = tissue.muscle[t] > 0;
+  std::vector<ActivationShape> shapes;
+  for (const VolumetricShape& shape : model.shapes) {
+    std::vector<Eigen::Index> rows;
+    for (Eigen::Index i = 0; i < shape.tets.size(); ++i)
+      if (active[static_cast<std::size_t>(shape.tets[i])]) rows.push_back(i);
+    shapes.push_back({shape.name, shape.jaw, shape.tets(rows), shape.stretch(rows, Eigen::all)});
+  }
+  return shapes;
+}
+
+JawPose blend_jaw(const JawJoint& joint, const std::vector<ActivationShape>& shapes, const VectorXd& weights) {
+  require_weights(weights, shapes.size());
+  JawPose pose = JawPose::Zero();
+  for (std::size_t j = 0; j < shapes.size(); ++j) pose += weights[static_cast<Eigen::Index>(j)] * shapes[j].jaw;
+  return clamp_to_limits(joint, pose);
+}
+
+ActivationBlender::ActivationBlender(const std::vector<ActivationShape>& shapes, const HeadTissue& tissue)
+    : tets_(static_cast<std::size_t>(tissue.soft.size())) {
+  for (std::size_t t = 0; t < tets_; ++t)
+    if (tissue.muscle[static_cast<Eigen::Index>(t)] > 0) active_.push_back(static_cast<int>(t));
+  const std::size_t chunks = (active_.size() + chunk - 1) / chunk;
+  for (const ActivationShape& shape : shapes) {
+    if (shape.change.rows() != shape.tets.size() || !shape.change.allFinite() ||
+        !std::is_sorted(shape.tets.begin(), shape.tets.end()))
+      reject("activation of " + shape.name, "needs one finite change per tet, in order of tets");
+    Piece piece;
+    std::size_t at = 0;
+    for (Eigen::Index i = 0; i < shape.tets.size(); ++i) {
+      while (at < active_.size() && tissue.soft[active_[at]] < shape.tets[i]) ++at;
+      if (at == active_.size()) break;
+      if (tissue.soft[active_[at]] != shape.tets[i]) continue;
+      piece.tets.push_back(static_cast<int>(at));
+      piece.change.insert(piece.change.end(), shape.change.row(i).begin(), shape.change.row(i).end());
+    }
+    for (std::size_t c = 0; c <= chunks; ++c)
+      piece.start.push_back(static_cast<std::size_t>(
+          std::lower_bound(piece.tets.begin(), piece.tets.end(), static_cast<int>(c * chunk)) - piece.tets.begin()));
+    pieces_.push_back(std::move(piece));
+  }
+}
+
+std::vector<Matrix3d> ActivationBlender::blend(const VectorXd& weights) const {
+  std::vector<Matrix3d> stretches(tets_, Matrix3d::Identity());
+  blend(weights, stretches);
+  return stretches;
+}
+
+void ActivationBlender::blend(const VectorXd& weights, std::vector<Matrix3d>& stretches) const {
+  require_weights(weights, pieces_.size());
+  if (stretches.size() != tets_) reject("activation", "needs a stretch for every tet of the tissue");
+  const auto chunks = static_cast<std::ptrdiff_t>((active_.size() + chunk - 1) / chunk);
+  parallel_for(
+      chunks,
+      [&](std::ptrdiff_t c) {
+        const std::size_t first = static_cast<std::size_t>(c) * chunk, end = std::min(first + chunk, active_.size());
+        std::array<Change, chunk> sum{};
+        for (std::size_t j = 0; j < pieces_.size(); ++j) {
+          const auto w = static_cast<float>(weights[static_cast<Eigen::Index>(j)]);
+          if (std::abs(w) < least_weight) continue;
+          const Piece& piece = pieces_[j];
+          for (std::size_t i = piece.start[static_cast<std::size_t>(c)];
+               i < piece.start[static_cast<std::size_t>(c) + 1]; ++i) {
+            Change& to = sum[static_cast<std::size_t>(piece.tets[i]) - first];
+            for (std::size_t k = 0; k < 6; ++k) to[k] += w * piece.change[6 * i + k];
+          }
+        }
+        for (std::size_t a = first; a < end; ++a)
+          stretches[static_cast<std::size_t>(active_[a])] = bounded_stretch(sum[a - first]);
+      },
+      1);
+}
+
+VectorXd innervation(const HeadTemplate& head, const HeadTissue& tissue, const VectorXd& gain_per_muscle) {
+  if (gain_per_muscle.size() != static_cast<Eigen::Index>(head.muscles.size()) || !gain_per_muscle.allFinite())
+    reject("innervation", "needs one finite gain per muscle");
+  VectorXd gain = VectorXd::Zero(head.volume.T.rows()), share = gain;
+  for (std::size_t m = 0; m < head.muscles.size(); ++m) {
+    const Muscle& muscle = head.muscles[m];
+    for (Eigen::Index i = 0; i < muscle.tets.size(); ++i) {
+      gain[muscle.tets[i]] += muscle.fraction[i] * gain_per_muscle[static_cast<Eigen::Index>(m)];
+      share[muscle.tets[i]] += muscle.fraction[i];
+    }
+  }
+  VectorXd out(tissue.soft.size());
+  for (Eigen::Index t = 0; t < out.size(); ++t)
+    out[t] = share[tissue.soft[t]] > 0 ? gain[tissue.soft[t]] / share[tissue.soft[t]] : 1;
+  return out;
+}
+
+void scale_activation(const VectorXd& gain, std::vector<Matrix3d>& stretches) {
+  if (gain.size() != static_cast<Eigen::Index>(stretches.size())) reject("innervation", "needs one gain per tet");
+  if (!(gain.array() >= 0 && gain.array() <= 1).all()) reject("innervation", "gains must be in [0, 1]");
+  for (std::size_t t = 0; t < stretches.size(); ++t) {
+    const double g = gain[static_cast<Eigen::Index>(t)];
+    stretches[t] = (1 - g) * Matrix3d::Identity() + g * stretches[t];
+  }
+}
+
+}  // namespace phiz
