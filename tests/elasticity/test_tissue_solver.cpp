@@ -77,17 +77,17 @@ TEST(TissueSystem, EnergyForcesAndStiffnessAreThoseOfTheLaws) {
       system.put_on_slides(at.get());
       double scale2 = 0;
       const double value = system.evaluate(at.get(), g.get(), &scale2);
-      EXPECT_NEAR(value, energy.value(x), 1e-10 * std::abs(value));
+      EXPECT_NEAR(value, energy.value(x), 2e-7 * std::abs(value));
       VectorXd magnitude;
       const MatrixX3d expected = energy.gradient(x, &magnitude);
       const double size = expected.norm();
       double expected_scale2 = 0;
       for (std::ptrdiff_t r = 0; r < system.free; ++r) {
         const Eigen::Index v = system.vertex_of[r];
-        EXPECT_LT((Eigen::Map<Vector3d>(g.get() + 4 * r) - expected.row(v).transpose()).norm(), 1e-9 * size);
+        EXPECT_LT((Eigen::Map<Vector3d>(g.get() + 4 * r) - expected.row(v).transpose()).norm(), 2e-6 * size);
         expected_scale2 += magnitude[v] * magnitude[v];
       }
-      EXPECT_NEAR(scale2, expected_scale2, 1e-9 * scale2);
+      EXPECT_NEAR(scale2, expected_scale2, 1e-5 * scale2);
 
       const FreeMotion motion(body, x);
       std::vector<float> room;

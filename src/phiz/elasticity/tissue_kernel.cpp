@@ -21,15 +21,15 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::CappedTag<double, 8>;
+using D = hn::CappedTag<float, 16>;
 using V = hn::Vec<D>;
 using Blocks = TissueBlocks;
 
 HWY_INLINE V Number(double value) {
-  return hn::Set(D(), value);
+  return hn::Set(D(), static_cast<float>(value));
 }
 
-HWY_INLINE void Load(const double* array, std::ptrdiff_t slot, int entries, V* out) {
+HWY_INLINE void Load(const float* array, std::ptrdiff_t slot, int entries, V* out) {
   for (int k = 0; k < entries; ++k) out[k] = hn::LoadU(D(), array + Blocks::at(slot, entries, k));
 }
 
@@ -41,14 +41,35 @@ HWY_INLINE V SymmetricDeterminant(const V* S) {
   return hn::MulAdd(S[4], c, hn::NegMulAdd(S[3], b, hn::Mul(S[0], a)));
 }
 
+/// Edges from corner 0 to the others of a block: four values per tet, edge after edge. To be called well before they
+/// are used: loads must not wait for stores.
+HWY_INLINE void GatherEdges(const Blocks& e, const double* x, std::ptrdiff_t block, float* edges) {
+  const hn::CappedTag<double, 4> wide;
+  const hn::Rebind<float, decltype(wide)> narrow;
+  const std::int32_t* vertex = e.vertex.get() + 4 * Blocks::width * block;
+  for (std::ptrdiff_t lane = 0; lane < Blocks::width; ++lane, vertex += 4)
+    for (std::size_t part = 0; part < 4; part += hn::Lanes(wide)) {
+      const auto origin = hn::LoadU(wide, x + 4 * static_cast<std::ptrdiff_t>(vertex[0]) + part);
+      for (int c = 0; c < 3; ++c) {
+        const auto corner = hn::LoadU(wide, x + 4 * static_cast<std::ptrdiff_t>(vertex[c + 1]) + part);
+        hn::StoreU(hn::DemoteTo(narrow, hn::Sub(corner, origin)), narrow,
+                   edges + 4 * (Blocks::width * c + lane) + part);
+      }
+    }
+}
+constexpr std::ptrdiff_t edge_floats = 12 * Blocks::width;
+
 /// What all laws need of the tets from `slot` on.
 struct State {
   V D9[9], F[9], C[9], J, volume, mu, lambda, active;
 
-  HWY_INLINE State(const Blocks& e, const double* x, std::ptrdiff_t slot) {
+  /// `edges`: as GatherEdges() leaves them.
+  HWY_INLINE State(const Blocks& e, const float* edges, std::ptrdiff_t slot) {
     V E[9];
+    V unused;
     Load(e.inverse.get(), slot, 9, D9);
-    Edges(D(), e.vertex.get() + 4 * slot, x, E);
+    for (int c = 0; c < 3; ++c)
+      hn::LoadInterleaved4(D(), edges + 4 * Blocks::width * c, E[3 * c], E[3 * c + 1], E[3 * c + 2], unused);
     Multiply3(E, D9, F);
     Cofactor3(D(), F, C);
     J = Dot3(F, C);
@@ -93,13 +114,42 @@ HWY_INLINE void AddNeoHookean(const State& s, V weight, V& energy, V* P) {
   for (int k = 0; k < 9; ++k) P[k] = hn::MulAdd(shear, s.F[k], hn::MulAdd(pressure, s.C[k], P[k]));
 }
 
-double EvaluateTissue(const Blocks& e, const double* x, double* gradient, std::ptrdiff_t begin, std::ptrdiff_t end) {
+/// Adds the forces P h_c of a vector of tets to the sums of their corners, with their norms.
+HWY_INLINE void AddForces(const Blocks& e, const V* P, const V* D9, std::ptrdiff_t slot, float* sums) {
   constexpr D d;
-  V energy = hn::Zero(d);
-  for (std::ptrdiff_t b = begin; b < end; ++b)
+  HWY_ALIGN float forces[4][4 * Blocks::width];
+  V first[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+  for (int c = 1; c < 4; ++c) {
+    V f[3];
+    for (int i = 0; i < 3; ++i) {
+      f[i] = hn::MulAdd(P[6 + i], D9[6 + c - 1], hn::MulAdd(P[3 + i], D9[3 + c - 1], hn::Mul(P[i], D9[c - 1])));
+      first[i] = hn::Sub(first[i], f[i]);
+    }
+    hn::StoreInterleaved4(f[0], f[1], f[2], hn::Sqrt(Dot3(f, f)), d, forces[c]);
+  }
+  hn::StoreInterleaved4(first[0], first[1], first[2], hn::Sqrt(Dot3(first, first)), d, forces[0]);
+  const hn::CappedTag<float, 4> four;
+  const std::uint16_t* local = e.local.data() + 4 * slot;
+  for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane, local += 4)
+    for (std::size_t c = 0; c < 4; ++c)
+      for (std::size_t part = 0; part < 4; part += hn::Lanes(four)) {
+        float* sum = sums + 4 * static_cast<std::size_t>(local[c]) + part;
+        hn::StoreU(hn::Add(hn::LoadU(four, sum), hn::LoadU(four, forces[c] + 4 * lane + part)), four, sum);
+      }
+}
+
+double EvaluateTissue(const Blocks& e, const double* x, std::ptrdiff_t chunk, float* sums) {
+  constexpr D d;
+  const std::ptrdiff_t begin = chunk * Blocks::chunk, end = HWY_MIN(begin + Blocks::chunk, e.blocks);
+  HWY_ALIGN float edges[2][edge_floats];
+  GatherEdges(e, x, begin, edges[0]);
+  double total = 0;
+  for (std::ptrdiff_t b = begin; b < end; ++b) {
+    if (b + 1 < end) GatherEdges(e, x, b + 1, edges[(b + 1 - begin) % 2]);
+    V energy = hn::Zero(d);
     for (std::size_t l = 0; l < Blocks::width; l += hn::Lanes(d)) {
       const std::ptrdiff_t slot = b * Blocks::width + static_cast<std::ptrdiff_t>(l);
-      const State s(e, x, slot);
+      const State s(e, edges[(b - begin) % 2] + 4 * l, slot);
       V P[9], R[9], sum = hn::Zero(d);
       for (V& p : P) p = hn::Zero(d);
       const V passive = hn::Sub(Number(1), s.active);
@@ -119,12 +169,10 @@ double EvaluateTissue(const Blocks& e, const double* x, double* gradient, std::p
       }
       energy = hn::MulAdd(s.volume, sum, energy);
       for (V& p : P) p = hn::Mul(s.volume, p);
-      StoreCornerForces(d, P, s.D9, 4 * Blocks::width, gradient + 4 * Blocks::at(slot, 4, 0));
+      AddForces(e, P, s.D9, slot, sums);
     }
-  HWY_ALIGN double parts[Blocks::width];
-  hn::Store(energy, d, parts);
-  double total = 0;
-  for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) total += parts[lane];
+    total += static_cast<double>(hn::GetLane(hn::SumOfLanes(d, energy)));
+  }
   return total;
 }
 
@@ -277,14 +325,16 @@ HWY_INLINE void AddNeoHookeanStiffness(const State& s, V weight, double least_cu
   AddVolume(s, lambda, BoundedPressure(s, hn::Mul(lambda, hn::Sub(s.J, n.alpha)), least_curvature), h, K);
 }
 
-void TissueStiffness(const Blocks& e, const double* stretches, const double* x, double least_curvature,
-                     float* stiffness, std::ptrdiff_t begin, std::ptrdiff_t end) {
+void TissueStiffness(const Blocks& e, const float* stretches, const double* x, double least_curvature, float* stiffness,
+                     std::ptrdiff_t begin, std::ptrdiff_t end) {
   constexpr D d;
   constexpr std::size_t entries = 90;
-  for (std::ptrdiff_t b = begin; b < end; ++b)
+  HWY_ALIGN float edges[edge_floats];
+  for (std::ptrdiff_t b = begin; b < end; ++b) {
+    GatherEdges(e, x, b, edges);
     for (std::size_t l = 0; l < Blocks::width; l += hn::Lanes(d)) {
       const std::ptrdiff_t slot = b * Blocks::width + static_cast<std::ptrdiff_t>(l);
-      const State s(e, x, slot);
+      const State s(e, edges + 4 * l, slot);
       V h[4][3], K[10][9];
       HatGradients(s.D9, h);
       for (auto& block : K)
@@ -307,14 +357,15 @@ void TissueStiffness(const Blocks& e, const double* stretches, const double* x, 
       const V twice = hn::Add(s.lambda, s.lambda);
       AddVolume(s, hn::Mul(twice, volume_weight),
                 BoundedPressure(s, hn::Mul(twice, hn::MulSub(volume_weight, s.J, goal)), least_curvature), h, K);
-      HWY_ALIGN double lanes[entries * Blocks::width];
+      HWY_ALIGN float lanes[entries * Blocks::width];
       for (int pair = 0; pair < 10; ++pair)
         for (int k = 0; k < 9; ++k)
           hn::Store(hn::Mul(s.volume, K[pair][k]), d, lanes + static_cast<std::size_t>(9 * pair + k) * Blocks::width);
       float* out = stiffness + slot * static_cast<std::ptrdiff_t>(entries);
       for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane, out += entries)
-        for (std::size_t k = 0; k < entries; ++k) out[k] = static_cast<float>(lanes[k * Blocks::width + lane]);
+        for (std::size_t k = 0; k < entries; ++k) out[k] = lanes[k * Blocks::width + lane];
     }
+  }
 }
 
 }  // namespace HWY_NAMESPACE
@@ -323,29 +374,49 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 #include <algorithm>
-#include <vector>
+#include <array>
+#include <tuple>
 
 namespace phiz {
 
 HWY_EXPORT(EvaluateTissue);
 HWY_EXPORT(TissueStiffness);
 
+namespace {
+
+/// Tets in the order of their slots: those with muscle, then the others, each kind by the rows of their corners and
+/// filled with copies, -1 - tet, up to whole blocks.
+std::vector<Eigen::Index> slot_order(const TissueBody& body, const VectorXi& row_of, std::ptrdiff_t* muscle_blocks) {
+  std::vector<Eigen::Index> muscle, rest;
+  for (Eigen::Index t = 0; t < body.tets.rows(); ++t)
+    (body.active.size() > 0 && body.active[t] > 0 ? muscle : rest).push_back(t);
+  const auto rows = [&](Eigen::Index t) {
+    std::array<int, 4> r{};
+    for (int c = 0; c < 4; ++c) r[static_cast<std::size_t>(c)] = row_of[body.tets(t, c)];
+    std::sort(r.begin(), r.end());
+    return r;
+  };
+  for (std::vector<Eigen::Index>* list : {&muscle, &rest}) {
+    std::sort(list->begin(), list->end(), [&](Eigen::Index a, Eigen::Index b) {
+      return std::make_tuple(rows(a), a) < std::make_tuple(rows(b), b);
+    });
+    while (list->size() % TissueBlocks::width != 0) list->push_back(-1 - list->front());
+  }
+  *muscle_blocks = static_cast<std::ptrdiff_t>(muscle.size()) / TissueBlocks::width;
+  muscle.insert(muscle.end(), rest.begin(), rest.end());
+  return muscle;
+}
+
+}  // namespace
+
 TissueBlocks::TissueBlocks(const TissueBody& body, const VectorXi& row_of)
     : tets(body.tets.rows()), passive(body.passive), slot_of(body.tets.rows()) {
-  std::vector<Eigen::Index> order, rest;
-  for (Eigen::Index t = 0; t < tets; ++t) (body.active.size() > 0 && body.active[t] > 0 ? order : rest).push_back(t);
-  const auto fill = [](std::vector<Eigen::Index>& list) {
-    while (list.size() % width != 0) list.push_back(-1 - list.front());
-  };
-  fill(order);
-  muscle_blocks = static_cast<std::ptrdiff_t>(order.size()) / width;
-  fill(rest);
-  order.insert(order.end(), rest.begin(), rest.end());
-  blocks = static_cast<std::ptrdiff_t>(order.size()) / width;
+  const std::vector<Eigen::Index> order = slot_order(body, row_of, &muscle_blocks);
   const std::size_t count = order.size();
-  for (Array* array : {&volume, &mu, &lambda, &active}) *array = hwy::AllocateAligned<double>(count);
-  inverse = hwy::AllocateAligned<double>(9 * count);
-  stretch = hwy::AllocateAligned<double>(6 * count);
+  blocks = static_cast<std::ptrdiff_t>(count) / width;
+  for (Array* array : {&volume, &mu, &lambda, &active}) *array = hwy::AllocateAligned<float>(count);
+  inverse = hwy::AllocateAligned<float>(9 * count);
+  stretch = hwy::AllocateAligned<float>(6 * count);
   vertex = hwy::AllocateAligned<std::int32_t>(4 * count);
   const TetRest shape = tet_rest(body.rest, body.tets);
   for (std::size_t s = 0; s < count; ++s) {
@@ -355,28 +426,43 @@ TissueBlocks::TissueBlocks(const TissueBody& body, const VectorXi& row_of)
     if (!copy) slot_of[t] = static_cast<int>(slot);
     const double growth = body.growth.size() > 0 ? body.growth[t] : 1;
     for (int k = 0; k < 9; ++k)
-      inverse[at(slot, 9, k)] = shape.inverse_edges[static_cast<std::size_t>(t)].data()[k] / growth;
-    volume[s] = copy ? 0 : shape.volume[t];
-    mu[s] = body.moduli[static_cast<std::size_t>(t)].mu;
-    lambda[s] = body.moduli[static_cast<std::size_t>(t)].lambda;
-    active[s] = body.active.size() > 0 ? body.active[t] : 0;
+      inverse[at(slot, 9, k)] = static_cast<float>(shape.inverse_edges[static_cast<std::size_t>(t)].data()[k] / growth);
+    volume[s] = copy ? 0 : static_cast<float>(shape.volume[t]);
+    mu[s] = static_cast<float>(body.moduli[static_cast<std::size_t>(t)].mu);
+    lambda[s] = static_cast<float>(body.moduli[static_cast<std::size_t>(t)].lambda);
+    active[s] = body.active.size() > 0 ? static_cast<float>(body.active[t]) : 0;
     for (int k = 0; k < 6; ++k) stretch[at(slot, 6, k)] = k < 3 ? 1 : 0;
     for (int c = 0; c < 4; ++c) vertex[4 * s + static_cast<std::size_t>(c)] = row_of[body.tets(t, c)];
+  }
+  local.resize(4 * count);
+  chunk_start.push_back(0);
+  for (std::size_t first = 0; first < 4 * count; first += 4 * chunk * width) {
+    const std::size_t last = std::min(4 * count, first + 4 * chunk * width);
+    std::vector<int> rows(vertex.get() + first, vertex.get() + last);
+    std::sort(rows.begin(), rows.end());
+    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+    for (std::size_t i = first; i < last; ++i)
+      local[i] = static_cast<std::uint16_t>(std::lower_bound(rows.begin(), rows.end(), vertex[i]) - rows.begin());
+    chunk_rows.insert(chunk_rows.end(), rows.begin(), rows.end());
+    chunk_start.push_back(static_cast<int>(chunk_rows.size()));
   }
 }
 
 void TissueBlocks::set_stretch(std::ptrdiff_t tet, const Matrix3d& S) {
   const std::ptrdiff_t slot = slot_of[tet];
   const Vector6d a = activation_of(S);
-  for (int k = 0; k < 6; ++k) stretch[at(slot, 6, k)] = a[k];
+  for (int k = 0; k < 6; ++k) stretch[at(slot, 6, k)] = static_cast<float>(a[k]);
 }
 
-double evaluate_tissue(const TissueBlocks& blocks, const double* x, double* gradient, std::ptrdiff_t begin,
-                       std::ptrdiff_t end) {
-  return HWY_DYNAMIC_DISPATCH(EvaluateTissue)(blocks, x, gradient, begin, end);
+double evaluate_tissue(const TissueBlocks& blocks, const double* x, std::ptrdiff_t chunk, float* sums) {
+  std::fill_n(sums,
+              4 * (blocks.chunk_start[static_cast<std::size_t>(chunk) + 1] -
+                   blocks.chunk_start[static_cast<std::size_t>(chunk)]),
+              0.0F);
+  return HWY_DYNAMIC_DISPATCH(EvaluateTissue)(blocks, x, chunk, sums);
 }
 
-void tissue_stiffness(const TissueBlocks& blocks, const double* stretches, const double* x, double least_curvature,
+void tissue_stiffness(const TissueBlocks& blocks, const float* stretches, const double* x, double least_curvature,
                       float* stiffness, std::ptrdiff_t begin, std::ptrdiff_t end) {
   HWY_DYNAMIC_DISPATCH(TissueStiffness)(blocks, stretches, x, least_curvature, stiffness, begin, end);
 }

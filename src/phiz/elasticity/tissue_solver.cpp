@@ -25,10 +25,12 @@ constexpr double idle_gap = 2e-4;
 constexpr int settle = 5;
 /// Iterations on one factor that have not converged: the Hessian is not what it was.
 constexpr int patience = 8;
+/// Relative error of the energy.
+constexpr double energy_rounding = 1e-7;
 /// Solves between the state that a factor is made at in the background and its first use.
 constexpr int factor_delay = 2;
 /// How far bones move, metres, in the difference that tells what their motion does to the forces.
-constexpr double probe = 1e-6;
+constexpr double probe = 1e-4;
 
 struct Contacts {
   std::vector<ContactRow> rows;    ///< vertices replaced by solver rows, those that do not move dropped
@@ -71,7 +73,7 @@ struct TissueSolver::Parts {
   FloatVector hat;       ///< L^-1 of the gradient and of the contact forces, one after the other
   FloatVector last_hat;  ///< of the last gradient
   MatrixX3d positions;
-  std::vector<double> solved_stretch;
+  std::vector<float> solved_stretch;
   std::vector<Slide> solved_slides;
   bool settled = false;  ///< the state is an equilibrium, from which a predictor makes sense
   bool has_factor = false, fresh = false;
@@ -501,7 +503,7 @@ SolveStatistics TissueSolver::Parts::descend(ContactScene* scene, double step_to
     last_length2 = products[1];
     double alpha = relaxation;
     if (alpha * reach > options.longest_step) alpha = options.longest_step / reach;
-    const double rounding = 1e-13 * std::abs(energy) + 1e-16;
+    const double rounding = energy_rounding * std::abs(energy) + 1e-16;
     double next_energy = energy;
     bool accepted = false;
     for (int halving = 0; halving < (fresh ? 16 : 2) && std::isfinite(reach); ++halving, alpha *= 0.5) {
@@ -580,7 +582,7 @@ SolveStatistics TissueSolver::Parts::solve(const MatrixX3d& pins, ContactScene* 
     factorise_now(x.get(), g.get());
   } else if (lead > options.longest_lead) {
     // A jump: go there in parts, so that lips meet where they would meet in motion.
-    const std::vector<double> stretch(system.blocks.stretch.get(), system.blocks.stretch.get() + solved_stretch.size());
+    const std::vector<float> stretch(system.blocks.stretch.get(), system.blocks.stretch.get() + solved_stretch.size());
     const std::vector<Slide> slides = system.body.slides;
     MatrixX3d from = pins;
     system.store(x.get(), from);
@@ -589,7 +591,8 @@ SolveStatistics TissueSolver::Parts::solve(const MatrixX3d& pins, ContactScene* 
     for (int part = 1; part <= parts; ++part) {
       const double share = static_cast<double>(part) / parts;
       for (std::size_t i = 0; i < stretch.size(); ++i)
-        system.blocks.stretch[i] = (1 - share) * solved_stretch[i] + share * stretch[i];
+        system.blocks.stretch[i] =
+            static_cast<float>(1 - share) * solved_stretch[i] + static_cast<float>(share) * stretch[i];
       for (std::size_t s = 0; s < slides.size(); ++s) {
         Slide& slide = system.body.slides[s];
         slide.point = (1 - share) * solved_slides[s].point + share * slides[s].point;
@@ -653,7 +656,7 @@ void TissueSolver::set_activation(const VectorXi& tets,
       tets.size(),
       [&](std::ptrdiff_t i) {
         const std::ptrdiff_t slot = blocks.slot_of[tets[i]];
-        for (int k = 0; k < 6; ++k) blocks.stretch[TissueBlocks::at(slot, 6, k)] = static_cast<double>(stretches(i, k));
+        for (int k = 0; k < 6; ++k) blocks.stretch[TissueBlocks::at(slot, 6, k)] = stretches(i, k);
       },
       2048);
 }

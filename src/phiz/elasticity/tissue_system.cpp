@@ -13,7 +13,7 @@ namespace phiz {
 
 namespace {
 
-constexpr std::ptrdiff_t block_grain = 24, row_grain = 512, column_grain = 128;
+constexpr std::ptrdiff_t block_grain = 16, row_grain = 512, column_grain = 128;
 
 Eigen::Map<const Vector3d> point(const double* x, std::ptrdiff_t row) {
   return Eigen::Map<const Vector3d>(x + 4 * row);
@@ -73,8 +73,8 @@ TissueSystem::TissueSystem(const TissueBody& given) : body((validate(given), giv
   pattern = block_pattern(body.tets, free_row, static_cast<int>(free));
   std::vector<std::vector<int>> sources(pattern.row.size());
   incidence_start_.assign(static_cast<std::size_t>(rows) + 1, 0);
+  for (const int row : blocks.chunk_rows) ++incidence_start_[static_cast<std::size_t>(row) + 1];
   for (Eigen::Index t = 0; t < body.tets.rows(); ++t) {
-    for (int c = 0; c < 4; ++c) ++incidence_start_[static_cast<std::size_t>(row_of[body.tets(t, c)]) + 1];
     for (int pair = 0; pair < 10; ++pair) {
       const int a = free_row[body.tets(t, corner_pairs[pair][0])], b = free_row[body.tets(t, corner_pairs[pair][1])];
       if (a < 0 || b < 0) continue;
@@ -91,15 +91,12 @@ TissueSystem::TissueSystem(const TissueBody& given) : body((validate(given), giv
     source_start_.push_back(static_cast<int>(source_.size()));
   }
   std::partial_sum(incidence_start_.begin(), incidence_start_.end(), incidence_start_.begin());
-  incidence_.resize(static_cast<std::size_t>(body.tets.size()));
+  incidence_.resize(blocks.chunk_rows.size());
   std::vector<int> next(incidence_start_.begin(), incidence_start_.end() - 1);
-  for (Eigen::Index t = 0; t < body.tets.rows(); ++t)
-    for (int c = 0; c < 4; ++c) {
-      const std::ptrdiff_t slot = blocks.slot_of[t];
-      incidence_[static_cast<std::size_t>(next[static_cast<std::size_t>(row_of[body.tets(t, c)])]++)] =
-          static_cast<int>(4 * TissueBlocks::at(slot, 4, c));
-    }
-  corners_ = zero_doubles(16 * TissueBlocks::width * blocks.blocks);
+  for (std::size_t i = 0; i < blocks.chunk_rows.size(); ++i)
+    incidence_[static_cast<std::size_t>(next[static_cast<std::size_t>(blocks.chunk_rows[i])]++)] =
+        static_cast<int>(4 * i);
+  sums_ = hwy::AllocateAligned<float>(4 * blocks.chunk_rows.size());
 
   sliding_of.assign(static_cast<std::size_t>(free), -1);
   for (std::size_t s = 0; s < body.slides.size(); ++s) {
@@ -145,8 +142,8 @@ void TissueSystem::set_forces(const MatrixX3d& forces) {
 }
 
 double TissueSystem::evaluate(const double* x, double* gradient, double* scale2) {
-  const double elastic = parallel_sum(blocks.blocks, block_grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    return evaluate_tissue(blocks, x, corners_.get(), begin, end);
+  const double elastic = parallel_sum(blocks.chunks(), 1, [&](std::ptrdiff_t chunk, std::ptrdiff_t) {
+    return evaluate_tissue(blocks, x, chunk, sums_.get() + 4 * blocks.chunk_start[static_cast<std::size_t>(chunk)]);
   });
   std::vector<double> scales(static_cast<std::size_t>((free + row_grain - 1) / row_grain), 0.0);
   const double loads = parallel_sum(rows, row_grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -164,10 +161,11 @@ double TissueSystem::evaluate(const double* x, double* gradient, double* scale2)
       }
       if (r >= free) continue;
       double sum = scale2 != nullptr ? g.norm() : 0;
-      for (const int corner : corners_of(r)) {
-        const Eigen::Map<const Vector3d> part(corners_.get() + corner);
-        g += part;
-        if (scale2 != nullptr) sum += part.norm();
+      for (int i = incidence_start_[static_cast<std::size_t>(r)]; i < incidence_start_[static_cast<std::size_t>(r) + 1];
+           ++i) {
+        const float* part = sums_.get() + incidence_[static_cast<std::size_t>(i)];
+        g += Eigen::Map<const Eigen::Vector3f>(part).cast<double>();
+        sum += static_cast<double>(part[3]);
       }
       Eigen::Map<Vector3d>(gradient + 4 * r) = g;
       gradient[4 * r + 3] = 0;

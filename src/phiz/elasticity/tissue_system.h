@@ -3,7 +3,6 @@
 /// then pinned ones and those that belong to no tet) with four doubles per row. Not a public header.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "phiz/elasticity/tissue_kernel.h"
@@ -23,8 +22,8 @@ struct SlidingRow {
 
 /// What a stiffness is taken at; a copy, so that it can be assembled while the solve goes on.
 struct StiffnessState {
-  std::vector<double> x;        ///< four per row
-  std::vector<double> stretch;  ///< as TissueBlocks::stretch
+  std::vector<double> x;       ///< four per row
+  std::vector<float> stretch;  ///< as TissueBlocks::stretch
   std::vector<SlidingRow> sliding;
   std::vector<Matrix3d> slide_bend;  ///< per sliding row: curvature times reaction
   double inverse_time_step2 = 0;     ///< 1 / h^2, 0 in statics
@@ -68,12 +67,8 @@ struct TissueSystem {
                 BlockMatrix& A) const;
 
  private:
-  std::span<const int> corners_of(std::ptrdiff_t row) const {
-    const auto r = static_cast<std::size_t>(row);
-    return {incidence_.data() + incidence_start_[r], incidence_.data() + incidence_start_[r + 1]};
-  }
-  AlignedDoubles corners_;                        ///< what tets give to their corners
-  std::vector<int> incidence_start_, incidence_;  ///< corners that add up at each row
+  hwy::AlignedFreeUniquePtr<float[]> sums_;       ///< of the chunks
+  std::vector<int> incidence_start_, incidence_;  ///< entries of sums_ that add up at each row
   std::vector<int> source_start_, source_;        ///< per block of the pattern: 2 (10 slot + pair) + transposed
 };
 
