@@ -23,8 +23,14 @@ namespace {
 constexpr double idle_gap = 2e-4;
 /// Iterations before steps that turn back are relaxed.
 constexpr int settle = 5;
-/// Iterations on one factor that have not converged: the Hessian is not what it was.
+/// Where more iterations than this are to be expected on an old factor, a new one is cheaper.
+constexpr double cheap_iterations = 3;
+/// A factor that had so many iterations without convergence is renewed in any case.
 constexpr int patience = 8;
+/// Of the first corrections after predictors, as shares of the predictors' steps, the largest of so many decides
+/// whether the next one is worth making.
+constexpr std::size_t remembered_shares = 6;
+constexpr int most_uncorrected = 4;  ///< solves in a row
 /// Relative error of the energy.
 constexpr double energy_rounding = 1e-7;
 /// Solves between the state that a factor is made at in the background and its first use.
@@ -79,6 +85,9 @@ struct TissueSolver::Parts {
   bool has_factor = false, fresh = false;
   double factor_inverse_time_step2 = 0;
   int served = 0;
+  std::vector<double> correction_shares;  ///< of the last solves that made a correction
+  int uncorrected = 0;                    ///< solves since the last one that did
+  std::vector<double> restricted;         ///< room for a gradient
   TissueSolverCounts counts;
   std::future<bool> job;
   std::optional<bool> job_result;
@@ -267,8 +276,9 @@ struct TissueSolver::Parts {
   }
 
   /// |P (g - C^T lambda)| / sqrt(scale2).
-  double residual(const Contacts& contacts, const double* gradient, double scale2) const {
-    std::vector<double> rest(gradient, gradient + 4 * system.free);
+  double residual(const Contacts& contacts, const double* gradient, double scale2) {
+    std::vector<double>& rest = restricted;
+    rest.assign(gradient, gradient + 4 * system.free);
     system.restrict_to_slides(rest.data());
     for (std::size_t i = 0; i < contacts.rows.size(); ++i) {
       const double lambda = contacts.multipliers[static_cast<Eigen::Index>(i)];
@@ -286,7 +296,7 @@ struct TissueSolver::Parts {
 
   /// hat <- L^-1 of the restricted gradient, and of the contact forces if there are any.
   void transform(const double* gradient, const Contacts& contacts) {
-    std::vector<double> restricted(gradient, gradient + 4 * system.free);
+    restricted.assign(gradient, gradient + 4 * system.free);
     system.restrict_to_slides(restricted.data());
     to_floats(restricted.data(), hat.get());
     contact_force(contacts, hat.get() + size());
@@ -327,13 +337,15 @@ struct TissueSolver::Parts {
     Eigen::MatrixXd U(m, 2 * pairs);
     if (pairs > 0) {
       const std::vector<const float*> columns = memory.columns();
-      for (std::size_t k = 0; k < columns.size(); ++k) {
-        const Eigen::VectorXf products = compliance.products(columns[k]);
-        const double scale = static_cast<int>(k) < pairs ? 1 : memory.gamma();
-        for (Eigen::Index i = 0; i < m; ++i)
-          U(i, static_cast<Eigen::Index>(k)) =
-              scale * static_cast<double>(products[slots[working[static_cast<std::size_t>(i)]]]);
-      }
+      parallel_for(
+          static_cast<std::ptrdiff_t>(columns.size()),
+          [&](std::ptrdiff_t k) {
+            const Eigen::VectorXf products = compliance.products(columns[static_cast<std::size_t>(k)]);
+            const double scale = k < pairs ? 1 : memory.gamma();
+            for (Eigen::Index i = 0; i < m; ++i)
+              U(i, k) = scale * static_cast<double>(products[slots[working[static_cast<std::size_t>(i)]]]);
+          },
+          1);
     }
     Eigen::MatrixXd M = Eigen::MatrixXd::Zero(m, m);
     if (pairs > 0) M = U * (memory.middle() * U.transpose());
@@ -447,11 +459,13 @@ struct TissueSolver::Parts {
     return reach;
   }
 
-  SolveStatistics descend(ContactScene* scene, double step_tolerance, int max_iterations);
+  /// `lead`: how far the predictor went, if it may be good enough by itself; 0 if not.
+  SolveStatistics descend(ContactScene* scene, double lead, double step_tolerance, int max_iterations);
   SolveStatistics solve(const MatrixX3d& pins, ContactScene* scene);
 };
 
-SolveStatistics TissueSolver::Parts::descend(ContactScene* scene, double step_tolerance, int max_iterations) {
+SolveStatistics TissueSolver::Parts::descend(ContactScene* scene, double lead, double step_tolerance,
+                                             int max_iterations) {
   SolveStatistics statistics;
   Step step{float_vector(size()), float_vector(size())};
   FloatVector last_p = float_vector(size());
@@ -460,10 +474,6 @@ SolveStatistics TissueSolver::Parts::descend(ContactScene* scene, double step_to
   double last_length2 = 0, relaxation = 1;
   double scale2 = 0;
   double energy = evaluate(x.get(), g.get(), &scale2);
-  contact = detect(scene, x.get(), 1);
-  transform(g.get(), contact);
-  std::copy_n(hat.get(), size(), last_hat.get());
-  memory.start(hat.get());
   const auto judge = [&](double reach) {
     statistics.residual = residual(contact, g.get(), scale2);
     statistics.penetration = deepest(contact);
@@ -471,25 +481,69 @@ SolveStatistics TissueSolver::Parts::descend(ContactScene* scene, double step_to
     statistics.converged = reach <= step_tolerance && statistics.residual <= options.residual_tolerance &&
                            statistics.penetration <= options.penetration_tolerance;
   };
-  int on_factor = 0;
+  const double share = correction_shares.empty()
+                           ? std::numeric_limits<double>::infinity()
+                           : *std::max_element(correction_shares.begin(), correction_shares.end());
+  const bool may_suffice = lead > 0 && uncorrected < most_uncorrected && share * lead <= 0.5 * step_tolerance;
+  contact = detect(scene, x.get(), may_suffice ? 0 : 1);
+  if (may_suffice) {
+    judge(share * lead);
+    statistics.last_step = share * lead;
+    if (statistics.converged) {
+      ++uncorrected;
+      statistics.energy = energy;
+      return statistics;
+    }
+  }
+  transform(g.get(), contact);
+  std::copy_n(hat.get(), size(), last_hat.get());
+  memory.start(hat.get());
+  int on_factor = 0, renewed = 0;
+  const auto start = std::chrono::steady_clock::now();
+  const auto note = [&](double length, double reach) {
+    if (options.trace == nullptr) return;
+    TraceEntry entry;
+    entry.iteration = statistics.iterations;
+    entry.round = renewed;
+    entry.energy = energy;
+    entry.residual = residual(contact, g.get(), scale2);
+    entry.contacts = static_cast<int>((contact.multipliers.array() > 0).count());
+    entry.violation = deepest(contact);
+    entry.step_length = length;
+    entry.last_step = length * reach;
+    entry.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    options.trace->push_back(entry);
+  };
   const auto renew_factor = [&] {
     drop_job();
     factorise_now(x.get(), g.get());
     on_factor = 0;
+    ++renewed;
     transform(g.get(), contact);
     std::copy_n(hat.get(), size(), last_hat.get());
     memory.start(hat.get());
   };
+  double last_reach = lead;
   while (statistics.iterations < max_iterations) {
     ++statistics.iterations;
     if (on_factor++ == patience) renew_factor();
     const VectorXd before = contact.multipliers;
     find_step(contact, step);
     const double reach = longest(step.p.get());
-    if (!std::isfinite(reach) && !fresh) {
+    // How many steps are left, by how much this one is shorter than the last.
+    const double rate = std::clamp(reach / std::max(last_reach, 1e-12), 0.05, 0.9);
+    const double expected = std::log(std::max(reach / step_tolerance, 1.0)) / -std::log(rate);
+    last_reach = reach;
+    if (!std::isfinite(reach) || (!fresh && expected > cheap_iterations && on_factor > 1)) {
+      if (fresh) break;
       contact.multipliers = before;
       renew_factor();
       continue;
+    }
+    if (statistics.iterations == 1 && lead > 0) {
+      uncorrected = 0;
+      if (correction_shares.size() == remembered_shares) correction_shares.erase(correction_shares.begin());
+      correction_shares.push_back(reach / lead);
     }
     const double contact_work = step.contact_work + work_of(contact, before, step.p.get());
     const double decrease = contact_work - slope(g.get(), step.p.get());
@@ -515,6 +569,7 @@ SolveStatistics TissueSolver::Parts::descend(ContactScene* scene, double step_to
       }
     }
     if (!accepted) {
+      note(0, reach);
       if (memory.pairs() > 0 || !fresh) {
         contact.multipliers = before;
         renew_factor();
@@ -526,6 +581,7 @@ SolveStatistics TissueSolver::Parts::descend(ContactScene* scene, double step_to
       statistics.last_step = reach;
       break;
     }
+    note(alpha, reach);
     std::copy_n(trial.get(), 4 * system.rows, x.get());
     std::swap(g, next_g);
     energy = next_energy;
@@ -600,10 +656,11 @@ SolveStatistics TissueSolver::Parts::solve(const MatrixX3d& pins, ContactScene* 
         slide.bend = (1 - share) * solved_slides[s].bend + share * slides[s].bend;
       }
       predict((1 - share) * from + share * pins, scene, std::numeric_limits<double>::infinity());
-      if (part < parts) iterations += descend(scene, std::max(options.step_tolerance, 3e-4), 6).iterations;
+      if (part < parts) iterations += descend(scene, 0, std::max(options.step_tolerance, 3e-4), 6).iterations;
     }
   }
-  SolveStatistics statistics = descend(scene, options.step_tolerance, options.max_iterations);
+  const bool in_one = settled && lead <= options.longest_lead;
+  SolveStatistics statistics = descend(scene, in_one ? lead : 0, options.step_tolerance, options.max_iterations);
   statistics.iterations += iterations;
   counts.iterations += statistics.iterations;
   if (!std::all_of(x.get(), x.get() + 4 * system.rows, [](double value) { return std::isfinite(value); })) {

@@ -20,7 +20,7 @@ struct ActivationShape {
 };
 
 /// Stretches that muscles may strive for; a blend beyond is brought back.
-constexpr double least_activation = 0.25, most_activation = 4;
+constexpr double least_activation = 0.5, most_activation = 2;
 
 /// A kinematic estimate of the activations of a model's expressions: the muscles of a tet strive for the stretch that
 /// the tet has in the volumetric shape, S_j = I + V_j. It knows nothing of forces: passive tissue resists, so that the

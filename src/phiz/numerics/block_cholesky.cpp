@@ -27,7 +27,7 @@ using Floats = hwy::AlignedFreeUniquePtr<float[]>;
 /// machine.
 constexpr int bins = 4;
 /// A subtree with more than this share of the work is divided.
-constexpr double largest_share = 0.12;
+constexpr double largest_share = 0.3;
 /// Fronts with more work than this are worked on by all threads, multiplications.
 constexpr double wide_front = 4e6;
 
@@ -68,7 +68,7 @@ bool worth_merging(const Node& child, const Node& parent) {
   const double stored = columns * (columns + 1) / 2 + columns * rows;
   const double zeros = child.columns * (parent.columns + rows - static_cast<double>(child.below.size()));
   const double share = zeros / stored;
-  return columns <= 6 ? share < 0.5 : columns <= 16 ? share < 0.2 : share < 0.04;
+  return columns <= 6 ? share < 0.4 : columns <= 16 ? share < 0.15 : share < 0.03;
 }
 
 /// Nodes of the elimination tree in the order of elimination.

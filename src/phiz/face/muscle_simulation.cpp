@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "phiz/face/muscle_simulation.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "phiz/core/error.h"
+#include "phiz/face/drawn_skin.h"
+#include "phiz/face/head_contacts.h"
+#include "phiz/geometry/operators.h"
+
+namespace phiz {
+
+namespace {
+
+const MuscleOptions& checked(const MuscleOptions& o) {
+  if (!(o.time_step > 0) || !(o.damping >= 0) || !(o.object_step > 0) || !o.gravity.allFinite() ||
+      !o.tissue.gravity.isZero(0))
+    reject("muscle simulation options",
+           "time and object steps must be positive, damping at least 0, and gravity is given once, for the world");
+  return o;
+}
+
+MatrixX3d moved(const Eigen::Isometry3d& by, const MatrixX3d& x) {
+  return (x * by.linear().transpose()).rowwise() + by.translation().transpose();
+}
+
+Eigen::Isometry3d between(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, double share) {
+  Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+  out.linear() = Eigen::Quaterniond(from.linear()).slerp(share, Eigen::Quaterniond(to.linear())).toRotationMatrix();
+  out.translation() = (1 - share) * from.translation() + share * to.translation();
+  return out;
+}
+
+struct Object {
+  int obstacle = -1;
+  double radius = 0;  ///< of its vertices about its origin
+  Eigen::Isometry3d place = Eigen::Isometry3d::Identity(), next = Eigen::Isometry3d::Identity();
+
+  double way() const {
+    const Eigen::AngleAxisd turn(Eigen::Quaterniond(next.linear() * place.linear().transpose()));
+    return (next.translation() - place.translation()).norm() + std::abs(turn.angle()) * radius;
+  }
+};
+
+}  // namespace
+
+struct MuscleSimulation::Parts {
+  MuscleOptions options;
+  HeadTemplate head;  ///< what contact, jaw and skin need of it
+  HeadTissue tissue;
+  ActivationBlender blender;
+  std::vector<ActivationShape> shapes;
+  std::optional<HeadContacts> contacts;
+  DrawnSkin drawn_skin;
+  VectorXd mass;
+  TissueSolver solver;
+  std::vector<Object> objects;
+  std::optional<VectorXd> innervated;
+  MatrixX3d forces;
+
+  std::vector<Matrix3d> stretches;
+  JawPose jaw = JawPose::Zero();
+  VectorXd weights;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  MatrixX3d velocity;
+
+  Parts(const FaceModel& model, const std::vector<ActivationShape>& given, const MuscleOptions& how)
+      : options(checked(how)),
+        head(model.head),
+        tissue(head_tissue(head, options.tissue)),
+        blender(given, tissue),
+        shapes(given),
+        contacts(options.contact ? std::optional<HeadContacts>(std::in_place, head, options.contact_options)
+                                 : std::nullopt),
+        drawn_skin(head),
+        mass(lumped_tet_mass(tissue.body.rest, tissue.body.tets, options.tissue.density)),
+        solver(tissue.body, options.solve),
+        stretches(static_cast<std::size_t>(tissue.body.tets.rows()), Matrix3d::Identity()),
+        weights(VectorXd::Zero(static_cast<Eigen::Index>(given.size()))),
+        velocity(MatrixX3d::Zero(head.volume.V.rows(), 3)) {}
+
+  ContactScene* scene() { return contacts ? &contacts->scene : nullptr; }
+
+  void set_weights(const VectorXd& w) {
+    if (w.size() != weights.size() || !w.allFinite())
+      reject("expression weights", "expected " + std::to_string(weights.size()) + " finite numbers");
+    blender.blend(w, stretches);
+    if (innervated) scale_activation(*innervated, stretches);
+    jaw = blend_jaw(head.jaw, shapes, w);
+    weights = w;
+  }
+
+  /// Forces that the solve does not know of: gravity, wind and what was given.
+  void apply_loads() {
+    const Matrix3d to_head = pose.linear().transpose();
+    MatrixX3d all = mass * (to_head * options.gravity).transpose();
+    if (forces.rows() > 0) all += forces;
+    if (!options.air.wind.isZero(0)) {
+      Air air = options.air;
+      air.wind = to_head * air.wind;
+      all += wind_forces(head.skin_triangles, solver.positions(), velocity * to_head.transpose(), air);
+    }
+    solver.set_forces(all);
+  }
+
+  /// Solves for the present activations, jaw and pose, with objects on their way.
+  SolveStatistics solve() {
+    solver.set_activation(stretches);
+    solver.set_slides(place_slides(head, tissue.body, jaw));
+    MatrixX3d pins = solver.positions();
+    place_pins(head, tissue.body, jaw, pins);
+    if (contacts) contacts->place_jaw(jaw_transform(head.jaw, jaw));
+    double way = 0;
+    for (const Object& object : objects) way = std::max(way, object.way());
+    const int parts = std::max(1, static_cast<int>(std::ceil(way / options.object_step)));
+    SolveStatistics statistics;
+    int iterations = 0;
+    for (int part = 1; part <= parts; ++part) {
+      for (const Object& object : objects)
+        contacts->scene.place(object.obstacle,
+                              pose.inverse() * between(object.place, object.next, static_cast<double>(part) / parts));
+      statistics = solver.solve(pins, scene());
+      iterations += statistics.iterations;
+    }
+    for (Object& object : objects) object.place = object.next;
+    statistics.iterations = iterations;
+    return statistics;
+  }
+};
+
+MuscleSimulation::MuscleSimulation(const FaceModel& model, const std::vector<ActivationShape>& shapes,
+                                   const MuscleOptions& options)
+    : parts_(std::make_unique<Parts>(model, shapes, options)) {}
+MuscleSimulation::~MuscleSimulation() = default;
+MuscleSimulation::MuscleSimulation(MuscleSimulation&&) noexcept = default;
+MuscleSimulation& MuscleSimulation::operator=(MuscleSimulation&&) noexcept = default;
+
+SolveStatistics MuscleSimulation::solve_static(const VectorXd& weights) {
+  parts_->set_weights(weights);
+  return solve_static(parts_->stretches, parts_->jaw);
+}
+
+SolveStatistics MuscleSimulation::solve_static(const std::vector<Matrix3d>& stretches, const JawPose& jaw) {
+  Parts& p = *parts_;
+  if (p.options.dynamic) fail("this simulation is dynamic", "use step() or make a static one");
+  if (!jaw.allFinite()) reject("pose of the jaw", "is not finite");
+  const auto start = std::chrono::steady_clock::now();
+  if (&stretches != &p.stretches) p.stretches = stretches;
+  p.jaw = jaw;
+  p.apply_loads();
+  SolveStatistics statistics = p.solve();
+  statistics.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return statistics;
+}
+
+SolveStatistics MuscleSimulation::step(double dt, const VectorXd& weights, const Eigen::Isometry3d& head) {
+  Parts& p = *parts_;
+  if (!p.options.dynamic) fail("this simulation is static", "use solve_static() or make a dynamic one");
+  if (!(dt > 0) || !std::isfinite(dt)) reject("simulation step", "the time step must be positive");
+  const auto start = std::chrono::steady_clock::now();
+  const double h = p.options.time_step;
+  const int steps = std::max(1, static_cast<int>(std::lround(dt / h)));
+  const VectorXd from = p.weights;
+  const Eigen::Isometry3d head_from = p.pose;
+  std::vector<Eigen::Isometry3d> first, last;
+  for (const Object& object : p.objects) {
+    first.push_back(object.place);
+    last.push_back(object.next);
+  }
+  SolveStatistics total;
+  for (int k = 1; k <= steps; ++k) {
+    const double share = static_cast<double>(k) / steps;
+    p.set_weights(from + share * (weights - from));
+    for (std::size_t i = 0; i < first.size(); ++i) p.objects[i].next = between(first[i], last[i], share);
+    const MatrixX3d world = moved(p.pose, p.solver.positions());
+    const Eigen::Isometry3d next_pose = between(head_from, head, share);
+    // What moves with the head is not damped.
+    const MatrixX3d carried = (moved(next_pose, p.solver.positions()) - world) / h;
+    const MatrixX3d ahead = world + h * (carried + (p.velocity - carried) / (1 + p.options.damping * h));
+    p.pose = next_pose;
+    p.apply_loads();
+    p.solver.set_inertia(h, moved(p.pose.inverse(), ahead));
+    const SolveStatistics statistics = p.solve();
+    p.velocity = (moved(p.pose, p.solver.positions()) - world) / h;
+    const int iterations = total.iterations + statistics.iterations;
+    const bool converged = (k == 1 || total.converged) && statistics.converged;
+    total = statistics;
+    total.iterations = iterations;
+    total.converged = converged;
+  }
+  total.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return total;
+}
+
+void MuscleSimulation::rest(const Eigen::Isometry3d& head) {
+  parts_->pose = head;
+  parts_->velocity.setZero();
+}
+
+int MuscleSimulation::add_object(const TriangleMesh& mesh, const Eigen::Isometry3d& place) {
+  Parts& p = *parts_;
+  if (!p.contacts) fail("this simulation has no contact", "make one with contact");
+  Object object;
+  object.obstacle = p.contacts->scene.add_rigid(mesh);
+  object.radius = mesh.V.rowwise().norm().maxCoeff();
+  object.place = object.next = place;
+  p.contacts->scene.place(object.obstacle, p.pose.inverse() * place);
+  p.contacts->scene.add_pair(p.head.skin_vertices, object.obstacle, -1, p.solver.positions());
+  p.objects.push_back(object);
+  return static_cast<int>(p.objects.size()) - 1;
+}
+
+void MuscleSimulation::move_object(int object, const Eigen::Isometry3d& place) {
+  if (object < 0 || object >= static_cast<int>(parts_->objects.size()))
+    reject("object " + std::to_string(object), "does not exist");
+  parts_->objects[static_cast<std::size_t>(object)].next = place;
+}
+
+void MuscleSimulation::set_innervation(const VectorXd& gain_per_muscle) {
+  if (gain_per_muscle.size() == 0)
+    parts_->innervated.reset();
+  else
+    parts_->innervated = innervation(parts_->head, parts_->tissue, gain_per_muscle);
+}
+
+void MuscleSimulation::set_wind(const Vector3d& wind) {
+  if (!wind.allFinite()) reject("wind", "is not finite");
+  parts_->options.air.wind = wind;
+}
+
+void MuscleSimulation::set_forces(const MatrixX3d& forces) {
+  if (forces.rows() != 0 && (forces.rows() != parts_->mass.size() || !forces.allFinite()))
+    reject("forces", "need one finite force for every vertex");
+  parts_->forces = forces;
+}
+
+const MatrixX3d& MuscleSimulation::positions() const {
+  return parts_->solver.positions();
+}
+MatrixX3d MuscleSimulation::skin() const {
+  return parts_->drawn_skin.at(parts_->solver.positions());
+}
+const MatrixX3d& MuscleSimulation::velocity() const {
+  return parts_->velocity;
+}
+JawPose MuscleSimulation::jaw() const {
+  return parts_->jaw;
+}
+const HeadTissue& MuscleSimulation::tissue() const {
+  return parts_->tissue;
+}
+const TissueSolver& MuscleSimulation::solver() const {
+  return parts_->solver;
+}
+TissueSolverOptions& MuscleSimulation::solve_options() {
+  return parts_->solver.options();
+}
+
+double MuscleSimulation::penetration() const {
+  return parts_->contacts ? parts_->contacts->scene.penetration(parts_->solver.positions()) : 0.0;
+}
+
+MatrixX3d MuscleSimulation::contact_forces() const {
+  return parts_->solver.contact_forces();
+}
+
+void MuscleSimulation::forget() {
+  Parts& p = *parts_;
+  p.solver.restart(p.tissue.body.rest);
+  if (p.contacts) p.contacts->scene.forget();
+  p.velocity.setZero();
+}
+
+}  // namespace phiz
