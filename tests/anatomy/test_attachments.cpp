@@ -82,7 +82,7 @@ TEST(AttachmentsOfAHead, TheRulesOfTheTableFindTheirPlaces) {
   std::map<std::string, int> count;
   find_attachments(head(), &count);
   for (const char* rule :
-       {"muscle origin", "nose", "alveolar", "chin", "scalp", "temple", "cheekbone", "jaw", "elsewhere"})
+       {"muscle origin", "nose", "alveolar", "chin", "deep", "scalp", "temple", "cheekbone", "jaw", "elsewhere"})
     EXPECT_GT(count[rule], 0) << rule;
   int all = 0;
   for (const auto& [rule, n] : count) all += n;

@@ -17,14 +17,20 @@ namespace phiz {
 namespace {
 
 // Reaches of the rules, metres.
-constexpr double origin_reach = 0.004, canthus_reach = 0.010, tooth_reach = 0.007, ligament_reach = 0.007;
+constexpr double origin_reach = 0.004, canthus_reach = 0.010, tooth_reach = 0.007, ligament_reach = 0.007,
+                 gap_reach = 0.030;
 
 bool is_flesh(int carrier) {
   return carrier == static_cast<int>(Carrier::flesh);
 }
 
-/// Normals of the bones at the vertices that touch soft tissue, outward from the bone; zero elsewhere.
-MatrixX3d bone_normals(const HeadTemplate& head) {
+/// The surface of the bones where they touch soft tissue.
+struct BoneSurface {
+  MatrixX3i triangles;  ///< over rows of volume.V
+  MatrixX3d normals;    ///< per vertex of the volume, outward from the bone; zero elsewhere
+};
+
+BoneSurface bone_surface(const HeadTemplate& head) {
   std::set<std::array<int, 3>> skin;
   const auto key = [](int a, int b, int c) {
     std::array<int, 3> k{a, b, c};
@@ -39,23 +45,26 @@ MatrixX3d bone_normals(const HeadTemplate& head) {
     for (int k = 0; k < 4; ++k) soft[static_cast<std::size_t>(head.volume.T(t, k))] = 1;
   MatrixX3d normals = MatrixX3d::Zero(head.volume.V.rows(), 3);
   const RegionFaces faces = region_faces(head.volume);
+  std::vector<Eigen::Index> touching;
   for (Eigen::Index f = 0; f < faces.F.rows(); ++f) {
     const bool inner_flesh = faces.inner(f) == Tissue::flesh, outer_flesh = faces.outer(f) == Tissue::flesh;
     const auto corner = faces.F.row(f);
     if (inner_flesh == outer_flesh || skin.contains(key(corner(0), corner(1), corner(2)))) continue;
     if (is_flesh(head.carrier(corner(0))) || is_flesh(head.carrier(corner(1))) || is_flesh(head.carrier(corner(2))))
       continue;
+    touching.push_back(f);
     const Vector3d a = head.volume.V.row(corner(0)), b = head.volume.V.row(corner(1)), c = head.volume.V.row(corner(2));
     const Vector3d out = (outer_flesh ? 1 : -1) * (b - a).cross(c - a);
     for (int k = 0; k < 3; ++k)
       if (soft[static_cast<std::size_t>(corner(k))]) normals.row(corner(k)) += out.transpose();
   }
-  return normals;
+  return {faces.F(touching, Eigen::all), normals};
 }
 
 class Rules {
  public:
-  explicit Rules(const HeadTemplate& head) : frame_(face_frame(head)) {
+  Rules(const HeadTemplate& head, const BoneSurface& bone)
+      : frame_(face_frame(head)), bone_(head.volume.V, bone.triangles), skin_(head.volume.V, head.skin_triangles) {
     for (const Muscle& muscle : head.muscles) {
       const MuscleFacts* facts = find_muscle_facts(muscle.name);
       if (muscle.ring || muscle.fibres.empty() || (facts != nullptr && (!facts->origin_on_bone || !facts->expression)))
@@ -73,7 +82,7 @@ class Rules {
   }
 
   /// Name of the rule for a vertex at p of the mandible (else of the skull), and what it says.
-  std::pair<const char*, Hold> apply(const Vector3d& p, bool mandible) const {
+  std::pair<const char*, Hold> apply(const Vector3d& p, const Vector3d& normal, bool mandible) const {
     const Vector3d q(std::abs(p.x()), p.y(), p.z());
     if (near(origins_, p, origin_reach)) return {"muscle origin", Hold::pin};
     if (!mandible && q.x() < 0.7 * frame_.inner_canthus.x() && p.y() > frame_.nose_tip.y() &&
@@ -86,6 +95,7 @@ class Rules {
       return {"chin", Hold::pin};
     if (near(zygomatic_, p, ligament_reach)) return {"zygomatic", Hold::pin};
     if (near(mandibular_, p, ligament_reach)) return {"mandibular", Hold::pin};
+    if (faces_bone(p, normal)) return {"deep", Hold::pin};
     if (mandible && q.x() > 0.8 * frame_.mouth_corner.x()) return {"jaw", Hold::slide};
     if (mandible) return {"elsewhere", Hold::pin};
     if (p.y() > frame_.brow) return {"scalp", Hold::slide};
@@ -101,6 +111,14 @@ class Rules {
   }
 
  private:
+  bool faces_bone(const Vector3d& p, const Vector3d& normal) const {
+    constexpr double off = 0.001;  // metres: past the bone's own faces
+    const auto bone = bone_.first_hit(p, normal, off, gap_reach);
+    if (!bone) return false;
+    const auto skin = skin_.first_hit(p, normal, 0, gap_reach);
+    return !skin || bone->t < skin->t;
+  }
+
   static bool near(const std::vector<Vector3d>& points, const Vector3d& p, double reach) {
     return std::any_of(points.begin(), points.end(),
                        [&](const Vector3d& q) { return (p - q).squaredNorm() < reach * reach; });
@@ -109,17 +127,19 @@ class Rules {
   FaceFrame frame_;
   std::vector<Vector3d> origins_, zygomatic_, mandibular_;
   std::vector<SurfaceQuery> teeth_;
+  SurfaceQuery bone_, skin_;
 };
 
 }  // namespace
 
 Attachments find_attachments(const HeadTemplate& head, std::map<std::string, int>* count_by_rule) {
-  const Rules rules(head);
-  const MatrixX3d normals = bone_normals(head);
+  const BoneSurface bone = bone_surface(head);
+  const Rules rules(head, bone);
   std::vector<int> rows, holds;
-  for (int v = 0; v < normals.rows(); ++v) {
-    if (normals.row(v).isZero(0) || is_flesh(head.carrier(v))) continue;
-    const auto [rule, hold] = rules.apply(head.volume.V.row(v), head.carrier(v) == static_cast<int>(Carrier::mandible));
+  for (int v = 0; v < bone.normals.rows(); ++v) {
+    if (bone.normals.row(v).isZero(0) || is_flesh(head.carrier(v))) continue;
+    const auto [rule, hold] = rules.apply(head.volume.V.row(v), bone.normals.row(v).normalized(),
+                                          head.carrier(v) == static_cast<int>(Carrier::mandible));
     rows.push_back(v);
     holds.push_back(static_cast<int>(hold));
     if (count_by_rule != nullptr) ++(*count_by_rule)[rule];
@@ -128,7 +148,7 @@ Attachments find_attachments(const HeadTemplate& head, std::map<std::string, int
   const auto count = static_cast<Eigen::Index>(rows.size());
   attachments.vertices = Eigen::Map<const VectorXi>(rows.data(), count);
   attachments.hold = Eigen::Map<const VectorXi>(holds.data(), count);
-  attachments.normals = normals(rows, Eigen::all).rowwise().normalized();
+  attachments.normals = bone.normals(rows, Eigen::all).rowwise().normalized();
   return attachments;
 }
 

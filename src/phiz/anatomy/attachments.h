@@ -12,6 +12,8 @@
 /// * pin, chin: the mandible medial of the corners of the mouth. Mentalis and the chin pad are fixed to the symphysis.
 /// * pin, zygomatic: within 7 mm of where zygomaticus major arises. Zygomatic retaining ligament (McGregor's patch).
 /// * pin, mandibular: within 7 mm of where depressor anguli oris arises. Mandibular retaining ligament.
+/// * pin, deep: bone faces bone: within 30 mm its outward normal meets bone before skin. In the narrow gaps under the
+///   zygomatic arch and behind the ramus flesh has nowhere to slide.
 /// * slide, jaw: the rest of the mandible: lower border, angle, ramus. Premasseter space: platysma glides over masseter
 ///   and over the border.
 /// * slide, scalp: the skull above the brows, forehead included. Loose areolar layer under the galea.

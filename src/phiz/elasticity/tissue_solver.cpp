@@ -88,6 +88,7 @@ struct TissueSolver::Parts {
   std::vector<double> correction_shares;  ///< of the last solves that made a correction
   int uncorrected = 0;                    ///< solves since the last one that did
   std::vector<double> restricted;         ///< room for a gradient
+  std::vector<float> weight2;             ///< per free row: square of 1 for watched vertices, less for others
   TissueSolverCounts counts;
   std::future<bool> job;
   std::optional<bool> job_result;
@@ -108,7 +109,8 @@ struct TissueSolver::Parts {
         next_g(zero_doubles(4 * system.free)),
         hat(float_vector(2 * size())),
         last_hat(float_vector(size())),
-        positions(body.rest) {
+        positions(body.rest),
+        weight2(static_cast<std::size_t>(system.free), 1.0F) {
     system.load(body.rest, x.get());
     remember_targets();
   }
@@ -197,6 +199,14 @@ struct TissueSolver::Parts {
   double longest(const float* p) const {
     float longest2 = 0;
     for (int r = 0; r < system.free; ++r) longest2 = std::max(longest2, vector_at(p, r).squaredNorm());
+    return std::sqrt(static_cast<double>(longest2));
+  }
+
+  /// The longest step of watched vertices, or a share of that of the others.
+  double longest_watched(const float* p) const {
+    float longest2 = 0;
+    for (int r = 0; r < system.free; ++r)
+      longest2 = std::max(longest2, weight2[static_cast<std::size_t>(r)] * vector_at(p, r).squaredNorm());
     return std::sqrt(static_cast<double>(longest2));
   }
 
@@ -523,7 +533,7 @@ SolveStatistics TissueSolver::Parts::descend(ContactScene* scene, double lead, d
     std::copy_n(hat.get(), size(), last_hat.get());
     memory.start(hat.get());
   };
-  double last_reach = lead;
+  double last_seen = lead;
   while (statistics.iterations < max_iterations) {
     ++statistics.iterations;
     if (on_factor++ == patience) renew_factor();
@@ -531,9 +541,10 @@ SolveStatistics TissueSolver::Parts::descend(ContactScene* scene, double lead, d
     find_step(contact, step);
     const double reach = longest(step.p.get());
     // How many steps are left, by how much this one is shorter than the last.
-    const double rate = std::clamp(reach / std::max(last_reach, 1e-12), 0.05, 0.9);
-    const double expected = std::log(std::max(reach / step_tolerance, 1.0)) / -std::log(rate);
-    last_reach = reach;
+    const double seen = longest_watched(step.p.get());
+    const double rate = std::clamp(seen / std::max(last_seen, 1e-12), 0.05, 0.9);
+    const double expected = std::log(std::max(seen / step_tolerance, 1.0)) / -std::log(rate);
+    last_seen = seen;
     if (!std::isfinite(reach) || (!fresh && expected > cheap_iterations && on_factor > 1)) {
       if (fresh) break;
       contact.multipliers = before;
@@ -543,7 +554,7 @@ SolveStatistics TissueSolver::Parts::descend(ContactScene* scene, double lead, d
     if (statistics.iterations == 1 && lead > 0) {
       uncorrected = 0;
       if (correction_shares.size() == remembered_shares) correction_shares.erase(correction_shares.begin());
-      correction_shares.push_back(reach / lead);
+      correction_shares.push_back(longest_watched(step.p.get()) / lead);
     }
     const double contact_work = step.contact_work + work_of(contact, before, step.p.get());
     const double decrease = contact_work - slope(g.get(), step.p.get());
@@ -577,8 +588,8 @@ SolveStatistics TissueSolver::Parts::descend(ContactScene* scene, double lead, d
       }
       system.put_on_slides(x.get());  // the energy is as low as rounding lets it be seen
       evaluate(x.get(), g.get(), &scale2);
-      judge(reach);
-      statistics.last_step = reach;
+      judge(seen);
+      statistics.last_step = seen;
       break;
     }
     note(alpha, reach);
@@ -587,9 +598,9 @@ SolveStatistics TissueSolver::Parts::descend(ContactScene* scene, double lead, d
     energy = next_energy;
     fresh = false;
     keep_pushes(contact);
-    statistics.last_step = reach * std::min(1.0, alpha / relaxation);
+    statistics.last_step = seen * std::min(1.0, alpha / relaxation);
     const bool last = statistics.iterations == max_iterations;
-    const bool stalled = relaxation < 0.2 && alpha * reach <= step_tolerance;
+    const bool stalled = relaxation < 0.2 && alpha * seen <= step_tolerance;
     const bool judged = statistics.last_step <= step_tolerance || last || stalled;
     contact = detect(scene, x.get(), judged ? 0 : 1 / relaxation);
     if (judged) judge(statistics.last_step);
@@ -744,6 +755,15 @@ void TissueSolver::set_inertia(double time_step, const MatrixX3d& prediction) {
     reject("inertia", "needs a positive time step and one finite prediction for every vertex");
   system.inverse_time_step2 = 1 / (time_step * time_step);
   system.load(prediction, system.prediction.get());
+}
+
+void TissueSolver::watch(const VectorXi& vertices, double slack) {
+  Parts& p = *parts_;
+  if (!(slack >= 1) || (vertices.size() > 0 && (vertices.minCoeff() < 0 || vertices.maxCoeff() >= p.system.rows)))
+    reject("watched vertices", "must be vertices of the body, the slack at least 1");
+  std::fill(p.weight2.begin(), p.weight2.end(), static_cast<float>(1 / (slack * slack)));
+  for (const int v : vertices)
+    if (p.system.row_of[v] < p.system.free) p.weight2[static_cast<std::size_t>(p.system.row_of[v])] = 1;
 }
 
 void TissueSolver::restart(const MatrixX3d& positions) {

@@ -19,7 +19,8 @@
 namespace phiz {
 
 struct TissueSolverOptions {
-  /// Ends when an iteration moves no vertex by more than this, metres; what is left to go is a fraction of it.
+  /// Ends when an iteration moves no vertex by more than this (vertices that are not watched: a few times more),
+  /// metres; what is left to go is a fraction of it.
   double step_tolerance = 5e-5;
   double residual_tolerance = 1e-3;     ///< ... and the relative force residual is below this
   double penetration_tolerance = 5e-5;  ///< ... and no vertex is deeper than this, metres
@@ -61,6 +62,10 @@ class TissueSolver {
   void set_forces(const MatrixX3d& forces);
   /// As TissueEnergy::set_inertia: an empty prediction for statics.
   void set_inertia(double time_step, const MatrixX3d& prediction);
+
+  /// The vertices whose places matter, e.g. those of the skin; others may be `slack` times the step tolerance from
+  /// where they belong. All are watched to begin with.
+  void watch(const VectorXi& vertices, double slack = 4);
 
   /// Where the next solve starts. Forgets everything but the analysis.
   void restart(const MatrixX3d& positions);

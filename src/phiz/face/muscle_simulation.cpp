@@ -81,7 +81,9 @@ struct MuscleSimulation::Parts {
         solver(tissue.body, options.solve),
         stretches(static_cast<std::size_t>(tissue.body.tets.rows()), Matrix3d::Identity()),
         weights(VectorXd::Zero(static_cast<Eigen::Index>(given.size()))),
-        velocity(MatrixX3d::Zero(head.volume.V.rows(), 3)) {}
+        velocity(MatrixX3d::Zero(head.volume.V.rows(), 3)) {
+    solver.watch(head.skin_vertices);
+  }
 
   ContactScene* scene() { return contacts ? &contacts->scene : nullptr; }
 
