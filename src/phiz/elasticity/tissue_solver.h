@@ -30,7 +30,7 @@ struct TissueSolverOptions {
   int refresh_solves = 12;     ///< ... and so does a factor that served this many solves
   bool background = true;      ///< make new factors on another core while solves go on; the same results on any machine
   double longest_step = 5e-3;  ///< no vertex moves farther in one iteration, metres
-  double longest_lead = 4e-3;  ///< a change that the predictor would answer with more is taken in parts, metres
+  double longest_lead = 8e-3;  ///< a change that the predictor would answer with more is taken in parts, metres
   Trace* trace = nullptr;  ///< gets an entry per iteration after the predictor, when set; `round` counts new factors
 };
 
