@@ -97,10 +97,11 @@ TEST(BlockCholesky, SeveralSidesAreSolvedAsOne) {
   BlockCholesky factor(system.A);
   ASSERT_EQ(factor.factorise(system.A), 0);
   for (const int sides : {2, 4}) {
-    Eigen::MatrixXf X(system.dense.rows(), sides);
-    for (int s = 0; s < sides; ++s) X.col(s) = random_floats(X.rows(), 10 + static_cast<std::uint64_t>(s));
-    const Eigen::MatrixXf B = X;
-    factor.solve(X.data(), sides);
+    Eigen::MatrixXf room(factor.side_stride(), sides);
+    for (int s = 0; s < sides; ++s) room.col(s) = random_floats(room.rows(), 10 + static_cast<std::uint64_t>(s));
+    const Eigen::MatrixXf B = room.topRows(system.dense.rows());
+    factor.solve(room.data(), sides);
+    const Eigen::MatrixXf X = room.topRows(system.dense.rows());
     EXPECT_LT((system.dense * X.cast<double>() - B.cast<double>()).norm(), 2e-6 * B.cast<double>().norm());
   }
 }

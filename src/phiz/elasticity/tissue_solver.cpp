@@ -107,7 +107,7 @@ struct TissueSolver::Parts {
         moved(zero_doubles(4 * system.rows)),
         g(zero_doubles(4 * system.free)),
         next_g(zero_doubles(4 * system.free)),
-        hat(float_vector(2 * size())),
+        hat(float_vector(2 * factor.side_stride())),
         last_hat(float_vector(size())),
         positions(body.rest),
         weight2(static_cast<std::size_t>(system.free), 1.0F) {
@@ -121,6 +121,7 @@ struct TissueSolver::Parts {
   Parts& operator=(const Parts&) = delete;
 
   std::ptrdiff_t size() const { return 3 * system.free; }
+  float* pushed_hat() { return hat.get() + factor.side_stride(); }
 
   void remember_targets() {
     solved_stretch.assign(system.blocks.stretch.get(),
@@ -309,9 +310,9 @@ struct TissueSolver::Parts {
     restricted.assign(gradient, gradient + 4 * system.free);
     system.restrict_to_slides(restricted.data());
     to_floats(restricted.data(), hat.get());
-    contact_force(contacts, hat.get() + size());
+    contact_force(contacts, pushed_hat());
     const bool pushed = contacts.multipliers.size() > 0 && contacts.multipliers.maxCoeff() > 0;
-    if (!pushed) std::fill_n(hat.get() + size(), size(), 0.0F);
+    if (!pushed) std::fill_n(pushed_hat(), size(), 0.0F);
     factor.forward(hat.get(), pushed ? 2 : 1);
   }
 
@@ -320,7 +321,7 @@ struct TissueSolver::Parts {
     const int pairs = memory.pairs();
     const auto gamma = static_cast<float>(memory.gamma());
     FloatVector excess = float_vector(size());  // L^-1 (g - C^T lambda)
-    combine({hat.get(), hat.get() + size()}, Eigen::Vector2f(1, -1), excess.get(), size());
+    combine({hat.get(), pushed_hat()}, Eigen::Vector2f(1, -1), excess.get(), size());
     const Eigen::VectorXd u = memory.products(excess.get());
     memory.apply(excess.get(), memory.middle(u), -1, step.hat.get());
     step.contact_work = 0;

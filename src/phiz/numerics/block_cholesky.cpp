@@ -428,6 +428,9 @@ BlockCholesky BlockCholesky::twin() const {
 int BlockCholesky::columns() const {
   return plan_->n;
 }
+std::ptrdiff_t BlockCholesky::side_stride() const {
+  return whole_groups(3 * static_cast<std::ptrdiff_t>(plan_->n));
+}
 std::ptrdiff_t BlockCholesky::factor_entries() const {
   return plan_->value_count;
 }
@@ -513,7 +516,7 @@ int BlockCholesky::factorise(const BlockMatrix& A, bool parallel) {
 
 void BlockCholesky::forward(float* x, int sides) const {
   const Plan& plan = *plan_;
-  const std::ptrdiff_t apart = 3 * static_cast<std::ptrdiff_t>(plan.n);
+  const std::ptrdiff_t apart = side_stride();
   const std::ptrdiff_t top_apart = 3 * static_cast<std::ptrdiff_t>(plan.top_vertices.size());
   const auto run = [&](std::size_t bin, float* top) {
     const FlushTinyNumbers flush;
@@ -557,7 +560,7 @@ void BlockCholesky::forward(float* x, int sides) const {
 
 void BlockCholesky::backward(float* x, int sides) const {
   const Plan& plan = *plan_;
-  const std::ptrdiff_t apart = 3 * static_cast<std::ptrdiff_t>(plan.n);
+  const std::ptrdiff_t apart = side_stride();
   const auto run = [&](std::size_t bin) {
     const FlushTinyNumbers flush;
     float* y = values_->y[bin].get();

@@ -68,7 +68,7 @@ class BlockCholesky {
   /// diagonal entry of it not positive.
   int factorise(const BlockMatrix& A, bool parallel = true);
 
-  /// With A = L L^T: x <- L^-1 x and x <- L^-T x, 3 columns() floats. `sides` of them (1, 2 or 4), one after the other,
+  /// With A = L L^T: x <- L^-1 x and x <- L^-T x, 3 columns() floats. `sides` of them (1, 2 or 4), side_stride() apart,
   /// cost little more than one. The same bits for any number of threads. Not to be called from two threads at once on
   /// one object.
   void forward(float* x, int sides = 1) const;
@@ -79,6 +79,7 @@ class BlockCholesky {
   SolvedRows forward_rows(const std::vector<SparseRow>& rows) const;
 
   int columns() const;
+  std::ptrdiff_t side_stride() const;     ///< 3 columns() rounded up to a multiple of 16
   std::ptrdiff_t factor_entries() const;  ///< floats that a solve reads twice
   double flops() const;                   ///< multiplications and additions of a factorisation
 
