@@ -8,7 +8,7 @@
 
 namespace phiz {
 
-ForceScale::ForceScale(const TissueBody& body) {
+VectorXd micrometre_forces2(const TissueBody& body) {
   constexpr double micrometre = 1e-6;
   const TetRest rest = tet_rest(body.rest, body.tets);
   VectorXd stiffness = VectorXd::Zero(body.rest.rows());
@@ -18,8 +18,10 @@ ForceScale::ForceScale(const TissueBody& body) {
     for (int k = 0; k < 4; ++k)
       stiffness[body.tets(t, k)] += 2 * body.moduli[s].mu * rest.volume[t] * hats.col(k).squaredNorm();
   }
-  least2_ = (micrometre * stiffness).array().square();
+  return (micrometre * stiffness).array().square();
 }
+
+ForceScale::ForceScale(const TissueBody& body) : least2_(micrometre_forces2(body)) {}
 
 double ForceScale::operator()(const FreeMotion& motion, const VectorXd& magnitude) const {
   double scale2 = 0, least2 = 0;

@@ -6,6 +6,9 @@
 
 namespace phiz {
 
+/// Squared force that moves each vertex alone by a micrometre, newtons^2.
+VectorXd micrometre_forces2(const TissueBody& body);
+
 /// The root of the sum over the vertices that can move of the squared sums of the norms of their tets' forces; at least
 /// the root of the sum of the squared forces that move every one of them alone by a micrometre, so that states without
 /// any force have a scale too.

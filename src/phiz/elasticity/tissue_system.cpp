@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "phiz/core/parallel.h"
+#include "phiz/elasticity/static_residual.h"
 
 namespace phiz {
 
@@ -117,6 +118,8 @@ TissueSystem::TissueSystem(const TissueBody& given) : body((validate(given), giv
       for (int c = 0; c < 4; ++c) mass[row_of[body.tets(t, c)]] += body.density[t] * rest.volume[t] / 4;
   if (body.added_mass.size() > 0)
     for (std::ptrdiff_t r = 0; r < rows; ++r) mass[r] += body.added_mass[vertex_of[r]];
+  const VectorXd least2 = micrometre_forces2(body);
+  for (std::ptrdiff_t r = 0; r < free; ++r) least_scale2 += least2[vertex_of[r]];
   force = zero_doubles(4 * rows);
   prediction = zero_doubles(4 * rows);
   set_forces({});
@@ -173,7 +176,7 @@ double TissueSystem::evaluate(const double* x, double* gradient, double* scale2)
     }
     return work;
   });
-  if (scale2 != nullptr) *scale2 = std::accumulate(scales.begin(), scales.end(), 0.0);
+  if (scale2 != nullptr) *scale2 = std::max(least_scale2, std::accumulate(scales.begin(), scales.end(), 0.0));
   return elastic + loads;
 }
 

@@ -46,13 +46,14 @@ struct TissueSystem {
   AlignedDoubles prediction;    ///< of inertia
   double inverse_time_step2 = 0;
   double rest_volume = 0;
+  double least_scale2 = 0;  ///< what a force residual is measured against, at least: static_residual.h
 
   void load(const MatrixX3d& positions, double* x) const;
   void store(const double* x, MatrixX3d& positions) const;
   void set_forces(const MatrixX3d& forces);
 
   /// Energy, joules, and its gradient at the free rows, four per row; not restricted by slides. `scale2`, if not null:
-  /// sum over the free rows of the squared sum of the norms of the tets' forces.
+  /// sum over the free rows of the squared sum of the norms of the tets' forces, at least least_scale2.
   double evaluate(const double* x, double* gradient, double* scale2 = nullptr);
   /// Puts sliding rows on their surfaces and finds the directions that they have there.
   void put_on_slides(double* x);
