@@ -12,6 +12,7 @@ void add_bench(CLI::App& app) {
   verb->require_subcommand(1);
   add_bench_volumetric(*verb);
   add_bench_forward(*verb);
+  add_bench_torture(*verb);
 }
 
 }  // namespace phiz

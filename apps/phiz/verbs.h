@@ -22,5 +22,6 @@ void add_bench(CLI::App& app);
 /// Parts of `bench`.
 void add_bench_volumetric(CLI::App& verb);
 void add_bench_forward(CLI::App& verb);
+void add_bench_torture(CLI::App& verb);
 
 }  // namespace phiz
