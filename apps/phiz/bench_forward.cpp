@@ -42,8 +42,7 @@ StaticEngine ipopt(const TissueSolverOptions& asked) {
 #endif
 }
 
-std::optional<FaceModel> fine_model(const std::string& name) {
-  if (name.empty()) return std::nullopt;
+FaceModel fine_model(const std::string& name) {
   if (name != "builtin") return load_model(name);
   BuiltinOptions options;
   options.size = HeadSize::fine;
@@ -175,14 +174,13 @@ std::string summary(const std::string& head, const ForwardBench& bench) {
 
 void run_forward(const ForwardArguments& arguments) {
   const FaceModel model = bench_model(arguments);
-  const std::optional<FaceModel> fine = fine_model(arguments.fine);
   ForwardBenchOptions options;
   options.frames = arguments.frames > 0 ? arguments.frames : arguments.quick ? 40 : 180;
   if (arguments.quick)
     options.reference_frames = options.own_start_frames = options.rival_frames = 0;
   else
     options.rival = ipopt(options.simulation.solve);
-  options.fine = fine ? &*fine : nullptr;
+  if (!arguments.fine.empty() && !arguments.quick) options.fine = [&arguments] { return fine_model(arguments.fine); };
   options.on_part = announce;
   const ForwardBench bench = bench_forward(model, bench_frames(arguments, options.frames), options);
   nlohmann::json report = bench_json("forward", model);

@@ -60,7 +60,7 @@ TEST(ForwardBench, ARivalThatIsTheReferenceAgreesWithIt) {
   ForwardBenchOptions options = few_frames();
   options.dial.clear();
   options.dynamic_step_tolerance = options.scaling_frames = 0;
-  options.fine = &model;
+  options.fine = [&model] { return model; };
   options.rival = [](const TissueEnergy& energy, MatrixX3d& x, ContactScene* contacts, Trace* trace) {
     NewtonStaticOptions how;
     how.trace = trace;

@@ -159,7 +159,7 @@ class Run {
     trace_real_time();
     turn_dial();
     if (options_.rival) play_rival();
-    if (options_.fine != nullptr) play_fine(*options_.fine);
+    if (options_.fine) play_fine();
     return std::move(bench_);
   }
 
@@ -272,8 +272,10 @@ class Run {
     }
   }
 
-  void play_fine(const FaceModel& fine) {
+  void play_fine() {
+    if (interrupted()) return;
     begin("fine head");
+    const FaceModel fine = options_.fine();
     const HeadTissue tissue = head_tissue(fine.head, options_.simulation.tissue);
     MuscleSimulation simulation(fine, estimate_activations(fine, tissue), options_.simulation);
     bench_.fine_soft_tets = tissue.soft.size();

@@ -26,8 +26,8 @@ struct ForwardBenchOptions {
   double dynamic_step_tolerance = 1e-5;           ///< metres; 0: no dynamics
   int scaling_frames = 60;                        ///< played with one and with two threads; 0: none
   MuscleOptions simulation;
-  StaticEngine rival;                                    ///< empty: none
-  const FaceModel* fine = nullptr;                       ///< a finer head, for how time grows with tets; null: none
+  StaticEngine rival;               ///< empty: none
+  std::function<FaceModel()> fine;  ///< makes a finer head, for how time grows with tets; empty: none
   std::function<void(const std::string& part)> on_part;  ///< called before each part of the work, when set
 };
 
