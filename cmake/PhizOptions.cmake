@@ -3,6 +3,8 @@
 option(PHIZ_BUILD_TESTS "Build the tests" ON)
 option(PHIZ_WERROR "Treat warnings as errors" ON)
 option(PHIZ_SANITIZE "Build with AddressSanitizer and UndefinedBehaviorSanitizer" OFF)
+# Binaries that hold IPOPT (EPL) are for measuring and must not be passed on: see benchmarks/README.md.
+option(PHIZ_IPOPT "Compare with IPOPT where it is installed" ON)
 
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)

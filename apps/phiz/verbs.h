@@ -19,5 +19,9 @@ void add_export(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_render(CLI::App& app);
 void add_bench(CLI::App& app);
+/// Parts of `bench`.
+void add_bench_volumetric(CLI::App& verb);
+void add_bench_forward(CLI::App& verb);
+void add_bench_torture(CLI::App& verb);
 
 }  // namespace phiz

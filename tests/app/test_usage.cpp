@@ -52,6 +52,8 @@ TEST(Usage, MistakesOnTheCommandLineExitWithTwo) {
       {"render", "head.phiz", "-o", "head.png", "--style", "skin", "--muscle", "masseter"},
       {"render", "head.phiz", "-o", "film.mp4", "--all-expressions"},
       {"bench", "volumetric", "--frames", "0"},
+      {"bench", "forward", "--frames", "0"},
+      {"bench", "torture", "--poses", "-1"},
   };
   for (const auto& words : mistakes) {
     const Outcome outcome = phiz_command(words);
@@ -100,7 +102,8 @@ TEST(Usage, WithoutAnyWordTheHelpIsShown) {
 
 TEST(Usage, EveryVerbShowsAnExample) {
   const std::vector<std::vector<std::string>> verbs = {
-      {"template", "builtin"}, {"animate"}, {"export"}, {"inspect"}, {"render"}, {"bench", "volumetric"}};
+      {"template", "builtin"}, {"animate"},          {"export"},          {"inspect"}, {"render"},
+      {"bench", "volumetric"}, {"bench", "forward"}, {"bench", "torture"}};
   for (std::vector<std::string> verb : verbs) {
     verb.push_back("--help");
     const Outcome help = phiz_command(verb);

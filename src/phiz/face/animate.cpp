@@ -41,13 +41,6 @@ int end_of(const Performance& performance, const AnimateOptions& options) {
   return end;
 }
 
-Eigen::Isometry3d head_pose(const Performance& performance, Eigen::Index frame, const Vector3d& pivot) {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = rotation_from_angles(performance.head.row(frame));
-  pose.translation() = pivot - pose.linear() * pivot;
-  return pose;
-}
-
 }  // namespace
 
 ExpressionMatch match_expressions(const FaceModel& model, const Performance& performance) {
@@ -94,6 +87,13 @@ VectorXd shape_weights(const ExpressionMatch& match, const Performance& performa
     if (too_far > 0) weights[blink] = std::max(0.0, weights[blink] - too_far);
   }
   return weights;
+}
+
+Eigen::Isometry3d head_pose(const Performance& performance, Eigen::Index frame, const Vector3d& pivot) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = rotation_from_angles(performance.head.row(frame));
+  pose.translation() = pivot - pose.linear() * pivot;
+  return pose;
 }
 
 std::pair<Matrix3d, Matrix3d> eye_rotations(const Performance& performance, Eigen::Index frame) {

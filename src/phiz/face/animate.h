@@ -40,6 +40,9 @@ ExpressionMatch match_expressions(const FaceModel& model, const Performance& per
 /// lips and lids would have to pass through each other.
 VectorXd shape_weights(const ExpressionMatch& match, const Performance& performance, Eigen::Index frame);
 
+/// Pose of the head in a frame, world from head: its rotation about `pivot`, metres.
+Eigen::Isometry3d head_pose(const Performance& performance, Eigen::Index frame, const Vector3d& pivot);
+
 /// Rotations of the eyes in a frame: those of the performance, or from its eyeLook weights if it records no rotation at
 /// all.
 std::pair<Matrix3d, Matrix3d> eye_rotations(const Performance& performance, Eigen::Index frame);

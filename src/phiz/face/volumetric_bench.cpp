@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "phiz/face/volumetric_bench.h"
 
-#include <sys/resource.h>
-
 #include <Eigen/LU>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <string>
 
 #include "phiz/anatomy/expression_names.h"
+#include "phiz/core/measure.h"
 #include "phiz/core/parallel.h"
 #include "phiz/core/progress.h"
 #include "phiz/elasticity/newton_reference.h"
@@ -21,18 +19,6 @@
 namespace phiz {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  return values[std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())))];
-}
 
 /// Targets of all soft tets by the scalar blend.
 std::vector<TetTarget> blended_targets(const FaceModel& model, const VectorXi& soft, const VectorXd& weights) {
@@ -64,20 +50,14 @@ std::vector<TetTarget> blended_targets(const FaceModel& model, const VectorXi& s
   return targets;
 }
 
-double peak_memory_mib() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024;
-}
-
 }  // namespace
 
 VolumetricBench bench_volumetric(const FaceModel& model, const Performance& performance,
                                  const VolumetricBenchOptions& options) {
   VolumetricBench bench;
-  const auto begin = Clock::now();
+  const Stopwatch setup;
   Simulation simulation(model, options.simulation);
-  bench.setup_ms = milliseconds_since(begin);
+  bench.setup_ms = setup.milliseconds();
   bench.soft_tets = simulation.soft_tets().size();
   bench.threads = thread_count();
   bench.frames = std::min<int>(options.frames, static_cast<int>(performance.time.size()));
@@ -88,11 +68,11 @@ VolumetricBench bench_volumetric(const FaceModel& model, const Performance& perf
   for (int f = 0; f < bench.frames && !interrupted(); ++f) {
     const VectorXd weights = shape_weights(match, performance, f);
     const MatrixX3d before = simulation.positions();
-    const auto frame_begin = Clock::now();
+    const Stopwatch watch;
     const SolveStatistics statistics = simulation.solve_static(weights);
     const MatrixX3d drawn = simulation.skin();
     if (f > 0) {
-      bench.ms.push_back(milliseconds_since(frame_begin));
+      bench.ms.push_back(watch.milliseconds());
       bench.iterations.push_back(statistics.iterations);
       bench.contacts.push_back(statistics.contacts);
     }
@@ -132,10 +112,10 @@ VolumetricBench bench_volumetric(const FaceModel& model, const Performance& perf
       Simulation again(model, options.simulation);
       std::vector<double> ms;
       for (int f = 0; f < std::min(bench.frames, 40); ++f) {
-        const auto frame_begin = Clock::now();
+        const Stopwatch watch;
         again.solve_static(shape_weights(match, performance, f));
         const MatrixX3d drawn = again.skin();
-        if (f > 0) ms.push_back(milliseconds_since(frame_begin));
+        if (f > 0) ms.push_back(watch.milliseconds());
       }
       return quantile(ms, 0.5);
     };
