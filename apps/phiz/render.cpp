@@ -66,21 +66,6 @@ CutPlane cut_plane(const std::string& option, const std::string& text) {
   return plane;
 }
 
-constexpr int largest_weight = 10;  // of an expression: far beyond any face, and safe to draw
-
-std::map<std::string, double> expression_weights(const std::vector<std::string>& words) {
-  std::map<std::string, double> weights;
-  for (const std::string& word : words) {
-    const std::size_t at = word.find('=');
-    const auto weight = at == std::string::npos ? 1.0 : parse_number(word.substr(at + 1));
-    if (!weight || !(std::abs(*weight) <= largest_weight))
-      misuse(fmt::format("--expression '{}' is not of the form NAME=WEIGHT with a weight from -{} to {}", word,
-                         largest_weight, largest_weight));
-    weights[word.substr(0, at)] = *weight;
-  }
-  return weights;
-}
-
 RenderOptions rays(const std::string& quality, bool film) {
   RenderOptions options = film ? film_options() : still_options();
   if (quality == "draft") {
@@ -228,7 +213,7 @@ void run_render(RenderArguments a) {
     std::tie(a.subject.low, a.subject.high) = two_numbers(a.range, ':', "--range", "LOW:HIGH");
     if (!(a.subject.low < a.subject.high)) misuse("--range must go from a lower to a higher number");
   }
-  a.subject.view.expressions = expression_weights(a.expressions);
+  a.subject.view.expressions = named_weights(a.expressions, "--expression");
   std::vector<View> views;
   for (const std::string& name : a.views) views.push_back(view_from_name(name));
 
