@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "object_options.h"
 #include "options.h"
 #include "phiz/core/error.h"
 #include "phiz/core/progress.h"
@@ -32,6 +33,7 @@ namespace {
 
 struct RenderArguments {
   SubjectOptions subject;
+  ObjectArguments object;
   std::string output, style = "clay", frames, size, cut, peel, range, quality = "normal";
   std::vector<std::string> views, expressions;
   int frame = -1;
@@ -219,6 +221,7 @@ void run_render(RenderArguments a) {
 
   // Mistakes are told before anything is opened, let alone rendered.
   extent_of(a.size, 0);
+  a.subject.object = load_object(a.object);
   if (!a.frames.empty()) frame_range(a.frames);
   const Subject subject = open_subject(a.subject);
   require_writable(a.output);
@@ -280,6 +283,7 @@ void add_render(CLI::App& app) {
   verb->add_option("--values", a->subject.values, "Heat map of the numbers in a file, one per vertex and line")
       ->type_name("FILE");
   verb->add_option("--range", a->range, "Ends of the heat map's scale")->type_name("LOW:HIGH");
+  add_object_options(*verb, a->object);
   verb->add_option("--cut", a->cut, "Plane of a cut-away in the head frame, e.g. x=4 (millimetres) or -z=20")
       ->type_name("AXIS=MM");
   verb->add_flag("--tets", a->subject.view.cut_tets, "Show the tets in a cut-away and the share that muscles fill");
