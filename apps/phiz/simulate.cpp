@@ -142,12 +142,13 @@ void run_simulate(const SimulateArguments& a) {
   if (!a.trace.empty()) options.muscles.solve.trace = &iterations;
   TraceTable trace;
   TakeNotes notes;
-  TakeWriter writer(a.output, head);
-  catch_interrupts();  // from here on there are frames to keep
+  std::optional<TakeWriter> writer;  // from the first frame on there is something to keep
+  catch_interrupts();
   {
     Progress progress("frames", head.frames_planned);
     simulate(model, performance, options, [&](const TakeFrame& frame, int number) {
-      writer.append(frame);
+      if (!writer) writer.emplace(a.output, head);
+      writer->append(frame);
       notes.note(frame, number);
       trace.add(number, iterations);
       iterations.clear();
@@ -155,8 +156,9 @@ void run_simulate(const SimulateArguments& a) {
       return true;
     });
   }
-  const int done = writer.frames();
-  writer.finish();
+  if (!writer) fail("stopped before the first frame");
+  const int done = writer->frames();
+  writer->finish();
   if (!a.trace.empty()) write_bytes(a.trace, trace.text());
 
   nlohmann::json report = notes.report();
