@@ -45,8 +45,7 @@ struct SimulateArguments {
   Report report;
 };
 
-MuscleOptions muscle_options(const SimulateArguments& a) {
-  MuscleOptions options;
+void set_muscles(const SimulateArguments& a, MuscleOptions& options) {
   options.contact = !a.no_contact;
   options.dynamic = a.dynamic;
   options.damping = a.damping;
@@ -57,13 +56,12 @@ MuscleOptions muscle_options(const SimulateArguments& a) {
   options.tissue.muscle_stiffness = a.muscle_stiffness;
   options.tissue.passive = a.passive == "neo-hookean" ? PassiveLaw::neo_hookean : PassiveLaw::corotated;
   options.solve.step_tolerance = 1e-3 * a.tolerance_mm;
-  return options;
 }
 
 /// Options that depend on nothing but the command line.
 SimulateOptions simulate_options(const SimulateArguments& a) {
   SimulateOptions options;
-  options.muscles = muscle_options(a);
+  set_muscles(a, options.muscles);
   options.paralysed = a.paralysed;
   if (!a.gust.empty()) {
     if (a.wind.empty()) misuse("--gust needs --wind");
