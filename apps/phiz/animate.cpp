@@ -3,10 +3,8 @@
 #include "phiz/face/animate.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -20,6 +18,7 @@
 #include "phiz/io/output_file.h"
 #include "phiz/io/take_file.h"
 #include "report.h"
+#include "take_notes.h"
 #include "verbs.h"
 
 namespace phiz {
@@ -38,29 +37,6 @@ struct AnimateArguments {
   bool no_contact = false;
   Report report;
 };
-
-void announce_mismatch(const ExpressionMatch& match) {
-  if (!match.unmatched.empty())
-    announce(fmt::format("the model does not have these expressions of the performance: {}",
-                         fmt::join(match.unmatched, ", ")));
-  if (!match.undriven.empty())
-    announce(fmt::format("the performance does not drive these expressions of the model: {}",
-                         fmt::join(match.undriven, ", ")));
-}
-
-nlohmann::json as_json(int number, double time, const SolveStatistics& statistics) {
-  return {{"frame", number},
-          {"time_s", time},
-          {"converged", statistics.converged},
-          {"iterations", statistics.iterations},
-          {"residual", statistics.residual},
-          {"energy_j", statistics.energy},
-          {"contacts", statistics.contacts},
-          {"penetration_mm", 1e3 * statistics.penetration},
-          {"volume_change", statistics.volume_change},
-          {"last_step_mm", 1e3 * statistics.last_step},
-          {"ms", statistics.milliseconds}};
-}
 
 /// Refuses a frame of the take at `path` that was not made from this performance, or not in this way.
 void require_same_making(const TakeFrame& frame, int number, const FaceModel& model, const Performance& performance,
@@ -112,23 +88,14 @@ void animate_model(const AnimateArguments& arguments) {
   TakeWriter writer =
       arguments.resume ? TakeWriter::resume(arguments.output, head, keep) : TakeWriter(arguments.output, head);
   catch_interrupts();  // from here on there are frames to keep
-  nlohmann::json statistics = nlohmann::json::array();
-  std::vector<double> milliseconds;
-  int unconverged = 0;
-  double penetration = 0;
-  const auto note = [&](const TakeFrame& frame, int number) {
-    statistics.push_back(as_json(number, frame.time, frame.statistics));
-    milliseconds.push_back(frame.statistics.milliseconds);
-    unconverged += frame.statistics.converged ? 0 : 1;
-    penetration = std::max(penetration, frame.statistics.penetration);
-  };
-  for (std::size_t f = 0; f < finished.size(); ++f) note(finished[f], options.first_frame + static_cast<int>(f));
+  TakeNotes notes;
+  for (std::size_t f = 0; f < finished.size(); ++f) notes.note(finished[f], options.first_frame + static_cast<int>(f));
   {
     Progress progress("frames", head.frames_planned);
     progress.advance(static_cast<std::ptrdiff_t>(finished.size()));
     animate(model, performance, options, finished, [&](const TakeFrame& frame, int number) {
       writer.append(frame);
-      note(frame, number);
+      notes.note(frame, number);
       progress.advance();
       return true;
     });
@@ -136,27 +103,17 @@ void animate_model(const AnimateArguments& arguments) {
   const int done = writer.frames();
   writer.finish();
 
-  std::sort(milliseconds.begin(), milliseconds.end());
-  const double median = milliseconds.empty() ? 0 : milliseconds[milliseconds.size() / 2];
-  const double longest = milliseconds.empty() ? 0 : milliseconds.back();
-  arguments.report.write({{"take", arguments.output},
-                          {"model", model.head.name},
-                          {"frames", done},
-                          {"frames_planned", head.frames_planned},
-                          {"frame_rate", head.frame_rate},
-                          {"frames_not_converged", unconverged},
-                          {"ms_median", median},
-                          {"ms_max", longest},
-                          {"penetration_mm_max", 1e3 * penetration},
-                          {"statistics", statistics}});
+  nlohmann::json report = notes.report();
+  report["take"] = arguments.output;
+  report["model"] = model.head.name;
+  report["frames_planned"] = head.frames_planned;
+  report["frame_rate"] = head.frame_rate;
+  arguments.report.write(report);
   if (done < head.frames_planned)
     fail(
         fmt::format("stopped after {} of {} frames, which are kept in {}", done, head.frames_planned, arguments.output),
         "the same command with --resume goes on");
-  arguments.report.print(
-      fmt::format("{}: {} frames, {} not converged, median {:.1f} ms and at most {:.1f} ms a frame, penetration at "
-                  "most {:.3f} mm\n",
-                  arguments.output, done, unconverged, median, longest, 1e3 * penetration));
+  arguments.report.print(fmt::format("{}: {}\n", arguments.output, notes.brief()));
 }
 
 }  // namespace

@@ -45,6 +45,7 @@ int run(int argc, char** argv) {
   });
   phiz::add_template(app);
   phiz::add_animate(app);
+  phiz::add_simulate(app);
   phiz::add_export(app);
   phiz::add_inspect(app);
   phiz::add_render(app);

@@ -27,6 +27,35 @@ std::pair<double, double> two_numbers(const std::string& text, char separator, c
   misuse(fmt::format("{} '{}' is not of the form {}", option, text, form));
 }
 
+Vector3d three_numbers(const std::string& text, const char* option) {
+  Vector3d out;
+  std::size_t at = 0;
+  for (int k = 0; k < 3; ++k) {
+    const std::size_t end = k < 2 ? text.find(',', at) : text.size();
+    const auto number =
+        end == std::string::npos ? std::nullopt : parse_number(trimmed(std::string_view(text).substr(at, end - at)));
+    if (!number || !std::isfinite(*number))
+      misuse(fmt::format("{} '{}' is not of the form X,Y,Z, e.g. 0,-9.81,0", option, text));
+    out[k] = *number;
+    at = end + 1;
+  }
+  return out;
+}
+
+std::map<std::string, double> named_weights(const std::vector<std::string>& words, const char* option) {
+  constexpr int largest = 10;  // far beyond any face, and safe to draw
+  std::map<std::string, double> weights;
+  for (const std::string& word : words) {
+    const std::size_t at = word.find('=');
+    const auto weight = at == std::string::npos ? 1.0 : parse_number(word.substr(at + 1));
+    if (!weight || !(std::abs(*weight) <= largest))
+      misuse(fmt::format("{} '{}' is not of the form NAME=WEIGHT with a weight from -{} to {}", option, word, largest,
+                         largest));
+    weights[word.substr(0, at)] = *weight;
+  }
+  return weights;
+}
+
 FrameRange frame_range(const std::string& text) {
   const auto [first, end] = two_numbers(text, ':', "--frames", "FIRST:END, e.g. 100:200");
   const bool whole = first == std::floor(first) && end == std::floor(end);

@@ -3,8 +3,12 @@
 #pragma once
 
 #include <initializer_list>
+#include <map>
 #include <string>
 #include <utility>
+#include <vector>
+
+#include "phiz/geometry/mesh.h"
 
 namespace CLI {
 class Validator;
@@ -16,6 +20,12 @@ namespace phiz {
 
 /// Two finite numbers with a separator between them, e.g. 640x480. `form` shows the user how to write them.
 std::pair<double, double> two_numbers(const std::string& text, char separator, const char* option, const char* form);
+
+/// Three finite numbers with commas between them, e.g. 0,-9.81,0.
+Vector3d three_numbers(const std::string& text, const char* option);
+
+/// Words NAME=WEIGHT (NAME alone: 1), weights from -10 to 10.
+std::map<std::string, double> named_weights(const std::vector<std::string>& words, const char* option);
 
 /// "FIRST:END" of the option --frames: whole numbers with 0 <= FIRST < END.
 struct FrameRange {

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "object_options.h"
 #include "options.h"
 #include "phiz/core/error.h"
 #include "phiz/core/progress.h"
@@ -32,6 +33,7 @@ namespace {
 
 struct RenderArguments {
   SubjectOptions subject;
+  ObjectArguments object;
   std::string output, style = "clay", frames, size, cut, peel, range, quality = "normal";
   std::vector<std::string> views, expressions;
   int frame = -1;
@@ -64,21 +66,6 @@ CutPlane cut_plane(const std::string& option, const std::string& text) {
   plane.normal = Vector3d::Unit(letter[0] - 'x') * (turned ? -1 : 1);
   plane.point = Vector3d::Unit(letter[0] - 'x') * (*offset / 1000);
   return plane;
-}
-
-constexpr int largest_weight = 10;  // of an expression: far beyond any face, and safe to draw
-
-std::map<std::string, double> expression_weights(const std::vector<std::string>& words) {
-  std::map<std::string, double> weights;
-  for (const std::string& word : words) {
-    const std::size_t at = word.find('=');
-    const auto weight = at == std::string::npos ? 1.0 : parse_number(word.substr(at + 1));
-    if (!weight || !(std::abs(*weight) <= largest_weight))
-      misuse(fmt::format("--expression '{}' is not of the form NAME=WEIGHT with a weight from -{} to {}", word,
-                         largest_weight, largest_weight));
-    weights[word.substr(0, at)] = *weight;
-  }
-  return weights;
 }
 
 RenderOptions rays(const std::string& quality, bool film) {
@@ -228,12 +215,13 @@ void run_render(RenderArguments a) {
     std::tie(a.subject.low, a.subject.high) = two_numbers(a.range, ':', "--range", "LOW:HIGH");
     if (!(a.subject.low < a.subject.high)) misuse("--range must go from a lower to a higher number");
   }
-  a.subject.view.expressions = expression_weights(a.expressions);
+  a.subject.view.expressions = named_weights(a.expressions, "--expression");
   std::vector<View> views;
   for (const std::string& name : a.views) views.push_back(view_from_name(name));
 
   // Mistakes are told before anything is opened, let alone rendered.
   extent_of(a.size, 0);
+  a.subject.object = load_object(a.object);
   if (!a.frames.empty()) frame_range(a.frames);
   const Subject subject = open_subject(a.subject);
   require_writable(a.output);
@@ -295,6 +283,7 @@ void add_render(CLI::App& app) {
   verb->add_option("--values", a->subject.values, "Heat map of the numbers in a file, one per vertex and line")
       ->type_name("FILE");
   verb->add_option("--range", a->range, "Ends of the heat map's scale")->type_name("LOW:HIGH");
+  add_object_options(*verb, a->object);
   verb->add_option("--cut", a->cut, "Plane of a cut-away in the head frame, e.g. x=4 (millimetres) or -z=20")
       ->type_name("AXIS=MM");
   verb->add_flag("--tets", a->subject.view.cut_tets, "Show the tets in a cut-away and the share that muscles fill");

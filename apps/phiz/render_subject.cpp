@@ -154,6 +154,19 @@ VectorXd take_values(const SubjectOptions& options, const TakeReader& reader, in
   return thickness;
 }
 
+Surface object_surface(const SimulateObject& object, const TakeFrame& frame, bool still_head) {
+  Surface surface;
+  surface.name = "object";
+  surface.mesh = object.mesh;
+  const Eigen::Isometry3d place = object.path.at(frame.time);
+  const Eigen::Isometry3d seen = object.on_head ? place : frame.head.inverse() * place;
+  surface.transform = still_head ? seen : frame.head * seen;
+  surface.material = clay_material();
+  surface.material.albedo = Vector3d(0.16, 0.24, 0.34);
+  surface.flat = true;
+  return surface;
+}
+
 Subject open_take(const SubjectOptions& options) {
   auto reader = std::make_shared<TakeReader>(options.file);
   if (reader->frames() == 0) reject(options.file, "the take has no frames", "animate again");
@@ -202,7 +215,10 @@ Subject open_take(const SubjectOptions& options) {
       view.values = fixed.size() > 0 ? fixed : take_values(options, *reader, index, fixed);
       view.scale = scale;
     }
-    return head_scene(reader->head(), reader->frame(index), view, head.get());
+    const TakeFrame frame = reader->frame(index);
+    Scene scene = head_scene(reader->head(), frame, view, head.get());
+    if (options.object) scene.surfaces.push_back(object_surface(*options.object, frame, close_up));
+    return scene;
   };
   auto sampled = std::make_shared<Take>(reader->head());
   for (int i = 0; i < subject.frames; i += std::max(1, subject.frames / 30))
@@ -215,6 +231,8 @@ Subject open_take(const SubjectOptions& options) {
 
 Subject open_subject(const SubjectOptions& options) {
   Subject subject;
+  if (options.object && (lower_extension(options.file) != ".phiz" || kind_of(options.file) != ContainerKind::take))
+    misuse("--object is shown beside a take; " + options.file + " is none");
   if (lower_extension(options.file) != ".phiz") {
     subject = open_mesh(options);
   } else {

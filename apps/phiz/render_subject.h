@@ -4,9 +4,11 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "phiz/face/simulate.h"
 #include "phiz/render/camera.h"
 #include "phiz/render/head_view.h"
 
@@ -14,11 +16,12 @@ namespace phiz {
 
 struct SubjectOptions {
   std::string file;
-  std::string model;         ///< the head of a take, or empty
-  HeadViewOptions view;      ///< style, plane, expressions
-  std::string quantity;      ///< of a heat map
-  std::string values;        ///< file with one number per vertex, for a heat map of anything
-  double low = 0, high = 0;  ///< ends of the heat map's scale; equal: fitted
+  std::string model;                     ///< the head of a take, or empty
+  HeadViewOptions view;                  ///< style, plane, expressions
+  std::string quantity;                  ///< of a heat map
+  std::string values;                    ///< file with one number per vertex, for a heat map of anything
+  double low = 0, high = 0;              ///< ends of the heat map's scale; equal: fitted
+  std::optional<SimulateObject> object;  ///< that a take was simulated with: shown beside it
 };
 
 struct Subject {
@@ -32,7 +35,7 @@ struct Subject {
   HeatScale scale;  ///< of heat maps
   bool has_legend = false;
   std::vector<LegendEntry> names;  ///< what the colours of a head's anatomy mean; may be empty
-  MatrixX3d points;  ///< what whole views frame
+  MatrixX3d points;                ///< what whole views frame
   /// Shows these expressions from now on (heads only).
   std::function<void(const std::map<std::string, double>&)> express;
 };

@@ -15,6 +15,7 @@ void add_template_build(CLI::App& verb);
 void add_template_person(CLI::App& verb);
 void add_template_check(CLI::App& verb);
 void add_animate(CLI::App& app);
+void add_simulate(CLI::App& app);
 void add_export(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_render(CLI::App& app);

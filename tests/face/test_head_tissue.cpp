@@ -67,6 +67,24 @@ TEST(HeadTissue, IsWhatTheHeadIsMadeOf) {
   EXPECT_NEAR(body.moduli[0].lambda, 3 * body.moduli[0].mu, 1e-9);
 }
 
+TEST(HeadTissue, SlidesEndWhereNoMuscleIsNear) {
+  TissueOptions options;
+  options.slide_reach = 0.02;
+  const HeadTissue held = head_tissue(preview_head(), options);
+  EXPECT_LT(held.body.slides.size(), tissue().body.slides.size());
+  const auto top = std::max_element(tissue().body.slides.begin(), tissue().body.slides.end(),
+                                    [](const Slide& a, const Slide& b) { return a.point.y() < b.point.y(); });
+  EXPECT_NE(held.body.pinned[static_cast<std::size_t>(top->vertex)], 0);  // the crown
+  bool brows = false;
+  for (const Slide& slide : held.body.slides) {
+    EXPECT_EQ(held.body.pinned[static_cast<std::size_t>(slide.vertex)], 0);
+    brows = brows || (std::abs(slide.point.x()) < 0.04 && slide.point.y() > 0.04 && slide.point.z() > 0.04);
+  }
+  EXPECT_TRUE(brows);
+  options.slide_reach = -1;
+  EXPECT_THROW(head_tissue(preview_head(), options), Error);
+}
+
 TEST(HeadTissue, StifferMuscleIsTheMixtureOfBothLaws) {
   TissueOptions options;
   options.muscle_stiffness = 1;

@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 
+#include "phiz/anatomy/sides.h"
 #include "phiz/core/error.h"
+#include "phiz/core/nearest_words.h"
 #include "phiz/core/parallel.h"
 #include "phiz/face/flesh.h"
 
@@ -136,6 +138,37 @@ VectorXd innervation(const HeadTemplate& head, const HeadTissue& tissue, const V
   for (Eigen::Index t = 0; t < out.size(); ++t)
     out[t] = share[tissue.soft[t]] > 0 ? gain[tissue.soft[t]] / share[tissue.soft[t]] : 1;
   return out;
+}
+
+VectorXd paralysis(const HeadTemplate& head, const HeadTissue& tissue, const std::vector<std::string>& paralysed) {
+  VectorXd of_muscles = VectorXd::Ones(static_cast<Eigen::Index>(head.muscles.size()));
+  VectorXd of_sides = VectorXd::Ones(tissue.soft.size());
+  for (const std::string& word : paralysed) {
+    if (word == "left" || word == "right") {
+      const double side = word == "left" ? 1 : -1;
+      for (Eigen::Index t = 0; t < of_sides.size(); ++t)
+        for (int k = 0; k < 4; ++k) {
+          const double x = side * head.volume.V(head.volume.T(tissue.soft[t], k), 0);
+          of_sides[t] -= x > 1e-9 ? 0.25 : x < -1e-9 ? 0 : 0.125;
+        }
+      continue;
+    }
+    bool found = false;
+    std::vector<std::string> names;
+    for (std::size_t m = 0; m < head.muscles.size(); ++m) {
+      const std::string& name = head.muscles[m].name;
+      names.push_back(name);
+      if (word != name && word != without_side(name)) continue;
+      of_muscles[static_cast<Eigen::Index>(m)] = 0;
+      found = true;
+    }
+    if (found) continue;
+    const std::vector<std::string> near = nearest_words(word, names, 1);
+    throw Error(ErrorKind::usage, "the head has no muscle '" + word + "'" +
+                                      (near.empty() ? std::string() : "; did you mean " + near.front() + "?") +
+                                      " Or say left or right for a whole side.");
+  }
+  return innervation(head, tissue, of_muscles).cwiseProduct(of_sides).cwiseMax(0).cwiseMin(1);
 }
 
 void scale_activation(const VectorXd& gain, std::vector<Matrix3d>& stretches) {

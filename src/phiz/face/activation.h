@@ -59,6 +59,10 @@ class ActivationBlender {
 /// How well each tet (of tissue.body) is innervated, for a gain per muscle of the head (1: healthy, 0: paralysed): the
 /// mean over the muscles in it. 1 where there is none.
 VectorXd innervation(const HeadTemplate& head, const HeadTissue& tissue, const VectorXd& gain_per_muscle);
+/// The same for paralysed muscles. A word is a muscle of the head, without Left or Right both of a pair; or "left" or
+/// "right", the half of the head on that side of the person, with its half of the muscles that lie across the middle.
+/// Throws phiz::Error(usage) for other words.
+VectorXd paralysis(const HeadTemplate& head, const HeadTissue& tissue, const std::vector<std::string>& paralysed);
 /// I + gain (S - I) in place, gains in [0, 1].
 void scale_activation(const VectorXd& gain, std::vector<Matrix3d>& stretches);
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "phiz/anatomy/muscle_table.h"
 #include "phiz/core/error.h"
 #include "phiz/face/bone_slides.h"
 #include "phiz/face/flesh.h"
@@ -15,6 +16,7 @@ void require(const TissueOptions& options) {
   for (const double value : {options.shear_scale, options.mu, options.muscle_stiffness})
     if (!(value > 0 && std::isfinite(value)))
       reject("tissue options", "the shear scale, mu and the stiffness of muscle must be positive");
+  if (!(options.slide_reach >= 0)) reject("tissue options", "the reach of slides must not be negative");
   for (const double value : {options.lambda, options.density})
     if (!(value >= 0 && std::isfinite(value))) reject("tissue options", "lambda and density must not be negative");
 }
@@ -25,6 +27,24 @@ VectorXd muscle_share(const HeadTemplate& head, const VectorXi& soft) {
   for (const Muscle& muscle : head.muscles)
     for (Eigen::Index i = 0; i < muscle.tets.size(); ++i) share[muscle.tets[i]] += muscle.fraction[i];
   return share(soft).cwiseMin(1.0);
+}
+
+/// Drops the slides that are farther than `reach` from every muscle of expression.
+void drop_far_slides(const HeadTemplate& head, double reach, std::vector<Slide>& slides) {
+  std::vector<char> near_muscle(static_cast<std::size_t>(head.volume.V.rows()), 0);
+  for (const Muscle& muscle : head.muscles) {
+    const MuscleFacts* facts = find_muscle_facts(muscle.name);
+    if (facts != nullptr && !facts->expression) continue;
+    for (const int t : muscle.tets)
+      for (int k = 0; k < 4; ++k) near_muscle[static_cast<std::size_t>(head.volume.T(t, k))] = 1;
+  }
+  std::erase_if(slides, [&](const Slide& slide) {
+    for (Eigen::Index v = 0; v < head.volume.V.rows(); ++v)
+      if (near_muscle[static_cast<std::size_t>(v)] != 0 &&
+          (head.volume.V.row(v).transpose() - slide.point).squaredNorm() <= reach * reach)
+        return false;
+    return true;
+  });
 }
 
 }  // namespace
@@ -49,6 +69,7 @@ HeadTissue head_tissue(const HeadTemplate& head, const TissueOptions& options) {
   body.gravity = options.gravity;
   body.passive = options.passive;
   body.slides = bone_slides(head);
+  if (std::isfinite(options.slide_reach)) drop_far_slides(head, options.slide_reach, body.slides);
   body.pinned.resize(static_cast<std::size_t>(body.rest.rows()));
   for (Eigen::Index v = 0; v < body.rest.rows(); ++v)
     body.pinned[static_cast<std::size_t>(v)] = head.carrier[v] != static_cast<int>(Carrier::flesh);

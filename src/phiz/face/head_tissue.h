@@ -2,6 +2,7 @@
 /// The flesh of a head as muscle and passive tissue (Ichim et al. 2017, sections 3 and 4; phace.md sections 3, 4, 11).
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "phiz/anatomy/head_template.h"
@@ -18,6 +19,10 @@ struct TissueOptions {
   double density = 1000;                ///< kg/m^3
   Vector3d gravity = Vector3d::Zero();  ///< m/s^2, head frame
   PassiveLaw passive = PassiveLaw::corotated;
+  /// Flesh slides on bone only within this distance from a muscle of expression, metres; beyond, it is pinned. The
+  /// scalp is held by its aponeurosis, which the model lacks: free, it slips over the skull by centimetres when a head
+  /// shakes.
+  double slide_reach = std::numeric_limits<double>::infinity();
 };
 
 struct HeadTissue {

@@ -10,6 +10,7 @@
 #include "phiz/core/error.h"
 #include "phiz/face/drawn_skin.h"
 #include "phiz/face/head_contacts.h"
+#include "phiz/face/rigid_path.h"
 #include "phiz/geometry/operators.h"
 
 namespace phiz {
@@ -28,23 +29,18 @@ MatrixX3d moved(const Eigen::Isometry3d& by, const MatrixX3d& x) {
   return (x * by.linear().transpose()).rowwise() + by.translation().transpose();
 }
 
-Eigen::Isometry3d between(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, double share) {
-  Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
-  out.linear() = Eigen::Quaterniond(from.linear()).slerp(share, Eigen::Quaterniond(to.linear())).toRotationMatrix();
-  out.translation() = (1 - share) * from.translation() + share * to.translation();
-  return out;
-}
-
 struct Object {
   int obstacle = -1;
   double radius = 0;  ///< of its vertices about its origin
-  Eigen::Isometry3d place = Eigen::Isometry3d::Identity(), next = Eigen::Isometry3d::Identity();
-
-  double way() const {
-    const Eigen::AngleAxisd turn(Eigen::Quaterniond(next.linear() * place.linear().transpose()));
-    return (next.translation() - place.translation()).norm() + std::abs(turn.angle()) * radius;
-  }
+  Eigen::Isometry3d place = Eigen::Isometry3d::Identity(), next = Eigen::Isometry3d::Identity();  ///< world
+  Eigen::Isometry3d seen = Eigen::Isometry3d::Identity();  ///< head from object at the last solve
 };
+
+/// At least as far as any vertex of the object goes.
+double way(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, double radius) {
+  const Eigen::AngleAxisd turn(Eigen::Quaterniond(to.linear() * from.linear().transpose()));
+  return (to.translation() - from.translation()).norm() + std::abs(turn.angle()) * radius;
+}
 
 }  // namespace
 
@@ -116,19 +112,24 @@ struct MuscleSimulation::Parts {
     MatrixX3d pins = solver.positions();
     place_pins(head, tissue.body, jaw, pins);
     if (contacts) contacts->place_jaw(jaw_transform(head.jaw, jaw));
-    double way = 0;
-    for (const Object& object : objects) way = std::max(way, object.way());
-    const int parts = std::max(1, static_cast<int>(std::ceil(way / options.object_step)));
+    // As the head sees them: they move, or it does.
+    double longest = 0;
+    for (const Object& object : objects)
+      longest = std::max(longest, way(object.seen, pose.inverse() * object.next, object.radius));
+    const int parts = std::max(1, static_cast<int>(std::ceil(longest / options.object_step)));
     SolveStatistics statistics;
     int iterations = 0;
     for (int part = 1; part <= parts; ++part) {
       for (const Object& object : objects)
         contacts->scene.place(object.obstacle,
-                              pose.inverse() * between(object.place, object.next, static_cast<double>(part) / parts));
+                              between(object.seen, pose.inverse() * object.next, static_cast<double>(part) / parts));
       statistics = solver.solve(pins, scene());
       iterations += statistics.iterations;
     }
-    for (Object& object : objects) object.place = object.next;
+    for (Object& object : objects) {
+      object.place = object.next;
+      object.seen = pose.inverse() * object.next;
+    }
     statistics.iterations = iterations;
     return statistics;
   }
@@ -144,6 +145,18 @@ MuscleSimulation& MuscleSimulation::operator=(MuscleSimulation&&) noexcept = def
 SolveStatistics MuscleSimulation::solve_static(const VectorXd& weights) {
   parts_->set_weights(weights);
   return solve_static(parts_->stretches, parts_->jaw);
+}
+
+SolveStatistics MuscleSimulation::settle(const VectorXd& weights, const Eigen::Isometry3d& head) {
+  Parts& p = *parts_;
+  const auto start = std::chrono::steady_clock::now();
+  p.set_weights(weights);
+  rest(head);
+  p.solver.set_inertia(0, {});
+  p.apply_loads();
+  SolveStatistics statistics = p.solve();
+  statistics.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return statistics;
 }
 
 SolveStatistics MuscleSimulation::solve_static(const std::vector<Matrix3d>& stretches, const JawPose& jaw) {
@@ -210,7 +223,8 @@ int MuscleSimulation::add_object(const TriangleMesh& mesh, const Eigen::Isometry
   object.obstacle = p.contacts->scene.add_rigid(mesh);
   object.radius = mesh.V.rowwise().norm().maxCoeff();
   object.place = object.next = place;
-  p.contacts->scene.place(object.obstacle, p.pose.inverse() * place);
+  object.seen = p.pose.inverse() * place;
+  p.contacts->scene.place(object.obstacle, object.seen);
   p.contacts->scene.add_pair(p.head.skin_vertices, object.obstacle, -1, p.solver.positions());
   p.objects.push_back(object);
   return static_cast<int>(p.objects.size()) - 1;
@@ -227,6 +241,16 @@ void MuscleSimulation::set_innervation(const VectorXd& gain_per_muscle) {
     parts_->innervated.reset();
   else
     parts_->innervated = innervation(parts_->head, parts_->tissue, gain_per_muscle);
+}
+
+void MuscleSimulation::set_tet_innervation(const VectorXd& gain_per_tet) {
+  if (gain_per_tet.size() != 0 && (gain_per_tet.size() != parts_->tissue.soft.size() ||
+                                   !(gain_per_tet.array() >= 0 && gain_per_tet.array() <= 1).all()))
+    reject("innervation", "needs one gain from 0 to 1 for every soft tet");
+  if (gain_per_tet.size() == 0)
+    parts_->innervated.reset();
+  else
+    parts_->innervated = gain_per_tet;
 }
 
 void MuscleSimulation::set_wind(const Vector3d& wind) {

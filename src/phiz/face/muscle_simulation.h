@@ -22,7 +22,7 @@ struct MuscleOptions {
   double time_step = 1.0 / 60;  ///< of dynamics, seconds; step() divides its dt into such steps
   double damping = 0;           ///< 1/s: how fast motion relative to the head dies out by itself
   Air air;                      ///< wind (world), density and drag
-  double object_step = 2e-3;    ///< objects that move farther are moved in parts, metres: nothing is jumped over
+  double object_step = 2e-3;    ///< objects that the head sees move farther come in parts, metres: none is jumped over
   TissueSolverOptions solve;
 };
 
@@ -40,6 +40,9 @@ class MuscleSimulation {
   SolveStatistics solve_static(const VectorXd& weights);
   /// The same for activations (a stretch per tet of tissue().body) and a pose of the jaw.
   SolveStatistics solve_static(const std::vector<Matrix3d>& stretches, const JawPose& jaw);
+  /// Equilibrium at rest in the world with a pose of the head, under gravity, wind and objects: a frame of statics for
+  /// a head that is somewhere, and where dynamics starts.
+  SolveStatistics settle(const VectorXd& weights, const Eigen::Isometry3d& head);
   /// One frame of dynamics: `dt` seconds, at whose end the weights and the head pose (world from head) hold.
   SolveStatistics step(double dt, const VectorXd& weights, const Eigen::Isometry3d& head);
   /// Puts the state at rest in the world, in the present positions, with that pose of the head.
@@ -53,6 +56,8 @@ class MuscleSimulation {
 
   /// How well each muscle of the head is innervated, 0 to 1 (phace.md, demo A6); empty: all are.
   void set_innervation(const VectorXd& gain_per_muscle);
+  /// The same per tet of tissue().body, see paralysis().
+  void set_tet_innervation(const VectorXd& gain_per_tet);
   void set_wind(const Vector3d& wind);
   /// External force per vertex of the volume, newtons, head frame; an empty matrix for none.
   void set_forces(const MatrixX3d& forces);
