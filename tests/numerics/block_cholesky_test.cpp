@@ -187,12 +187,13 @@ TEST(BlockCholesky, TellsWhenAMatrixIsNotFiniteAndRecovers) {
   System system = random_system(4, 2, 11);
   BlockCholesky factor(system.A);
   const std::vector<float> good = system.A.value;
-  for (const float bad : {-1.0F, 0.0F, std::nanf("")}) {
-    system.A.value[9 * static_cast<std::size_t>(system.A.start[7])] = bad;
-    EXPECT_EQ(factor.factorise(system.A), -1) << bad;
-    system.A.value = good;
-    EXPECT_EQ(factor.factorise(system.A), 0);
-  }
+  float& entry = system.A.value[9 * static_cast<std::size_t>(system.A.start[7])];
+  entry = std::nanf("");
+  EXPECT_EQ(factor.factorise(system.A), -1);
+  entry = -50;
+  EXPECT_EQ(factor.factorise(system.A), 1);
+  system.A.value = good;
+  EXPECT_EQ(factor.factorise(system.A), 0);
 }
 
 }  // namespace

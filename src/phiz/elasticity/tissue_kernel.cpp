@@ -227,7 +227,8 @@ HWY_INLINE void AddShape(const State& s, V weight, const V* S, double least_curv
   const V inverse = hn::IfThenElseZero(regular, hn::Div(Number(1), hn::IfThenElse(regular, det, Number(1))));
   for (V& m : M) m = hn::Mul(inverse, m);
   if (least_curvature > any_curvature) {
-    // The smallest eigenvalue of N from below; the twist with it has the curvature 2 - 4 / nu.
+    // The smallest eigenvalue of N from below; the twist with it has the curvature 2 - 4 / nu
+    // in relaxed tissue.
     const V minors =
         hn::Add(hn::MulSub(N[0], N[4], hn::Mul(N[1], N[1])),
                 hn::Add(hn::MulSub(N[4], N[8], hn::Mul(N[5], N[5])), hn::MulSub(N[0], N[8], hn::Mul(N[2], N[2]))));
@@ -238,7 +239,15 @@ HWY_INLINE void AddShape(const State& s, V weight, const V* S, double least_curv
       const V slope = hn::MulAdd(hn::MulSub(Number(3), nu, hn::Add(trace, trace)), nu, minors);
       nu = hn::Sub(nu, hn::IfThenElseZero(hn::Gt(slope, Number(1e-12)), hn::Div(value, slope)));
     }
-    const V share = hn::Mul(nu, Number(0.5 * (1 - least_curvature)));
+    V share = hn::Mul(nu, Number(0.5 * (1 - least_curvature)));
+    if (muscle) {
+      // A stretch S turns with up to the square of its largest eigenvalue, which no row sum is below.
+      const V xy = hn::Abs(S[3]), xz = hn::Abs(S[4]), yz = hn::Abs(S[5]);
+      const V x = hn::Add(hn::Abs(S[0]), hn::Add(xy, xz)), y = hn::Add(hn::Abs(S[1]), hn::Add(xy, yz)),
+              z = hn::Add(hn::Abs(S[2]), hn::Add(xz, yz));
+      const V largest = hn::Max(x, hn::Max(y, z));
+      share = hn::Div(share, hn::Mul(largest, largest));
+    }
     const V weaker = hn::Min(Number(1), hn::Max(hn::Zero(d), share));
     for (V& m : M) m = hn::Mul(weaker, m);
   }

@@ -81,7 +81,8 @@ struct TissueSolver::Parts {
   MatrixX3d positions;
   std::vector<float> solved_stretch;
   std::vector<Slide> solved_slides;
-  bool settled = false;  ///< the state is an equilibrium, from which a predictor makes sense
+  std::vector<Slide> rest_slides;
+  bool settled = true;  ///< the state is near an equilibrium, from which a predictor makes sense
   bool has_factor = false, fresh = false;
   double factor_inverse_time_step2 = 0;
   int served = 0;
@@ -111,8 +112,8 @@ struct TissueSolver::Parts {
         last_hat(float_vector(size())),
         positions(body.rest),
         weight2(static_cast<std::size_t>(system.free), 1.0F) {
-    system.load(body.rest, x.get());
-    remember_targets();
+    rest_slides = body.slides;
+    start_from(body.rest);
   }
   ~Parts() {
     if (job.valid()) job.wait();
@@ -127,6 +128,21 @@ struct TissueSolver::Parts {
     solved_stretch.assign(system.blocks.stretch.get(),
                           system.blocks.stretch.get() + 6 * TissueBlocks::width * system.blocks.muscle_blocks);
     solved_slides = system.body.slides;
+  }
+
+  /// At rest, relaxed flesh is in balance but for its weight.
+  void start_from(const MatrixX3d& at) {
+    positions = at;
+    system.load(at, x.get());
+    system.put_on_slides(x.get());
+    settled = at == system.body.rest;
+    remember_targets();
+    if (!settled) return;
+    solved_slides = rest_slides;
+    for (std::size_t i = 0; i < solved_stretch.size(); ++i) {
+      const std::size_t entry = i / static_cast<std::size_t>(TissueBlocks::width) % 6;
+      solved_stretch[i] = entry < 3 ? 1 : 0;
+    }
   }
 
   // === Factors
@@ -453,7 +469,7 @@ struct TissueSolver::Parts {
     }
     if (!has_factor || factor_inverse_time_step2 != system.inverse_time_step2) {
       drop_job();
-      factorise_now(moved.get(), g.get());
+      factorise_now(x.get(), g.get());
     }
     Contacts contacts = detect(scene, moved.get(), 1);
     transform(g.get(), contacts);
@@ -485,7 +501,9 @@ SolveStatistics TissueSolver::Parts::descend(ContactScene* scene, double lead, d
   double last_length2 = 0, relaxation = 1;
   double scale2 = 0;
   double energy = evaluate(x.get(), g.get(), &scale2);
+  bool is_judged = false;
   const auto judge = [&](double reach) {
+    is_judged = true;
     statistics.residual = residual(contact, g.get(), scale2);
     statistics.penetration = deepest(contact);
     statistics.contacts = static_cast<int>((contact.multipliers.array() > 0).count());
@@ -529,6 +547,7 @@ SolveStatistics TissueSolver::Parts::descend(ContactScene* scene, double lead, d
     drop_job();
     factorise_now(x.get(), g.get());
     on_factor = 0;
+    relaxation = 1;
     ++renewed;
     transform(g.get(), contact);
     std::copy_n(hat.get(), size(), last_hat.get());
@@ -594,6 +613,7 @@ SolveStatistics TissueSolver::Parts::descend(ContactScene* scene, double lead, d
       break;
     }
     note(alpha, reach);
+    is_judged = false;
     std::copy_n(trial.get(), 4 * system.rows, x.get());
     std::swap(g, next_g);
     energy = next_energy;
@@ -619,6 +639,10 @@ SolveStatistics TissueSolver::Parts::descend(ContactScene* scene, double lead, d
       memory.add(s.get(), y.get(), y.get(), hat.get());
     }
     std::copy_n(hat.get(), size(), last_hat.get());
+  }
+  if (!is_judged) {
+    contact = detect(scene, x.get(), 0);
+    judge(statistics.last_step);
   }
   if (has_apart && statistics.penetration > options.penetration_tolerance) {
     // Two states took turns; of the two, the one without penetration.
@@ -772,12 +796,10 @@ void TissueSolver::restart(const MatrixX3d& positions) {
   if (positions.rows() != p.system.rows || !positions.allFinite())
     reject("tissue solver", "needs a finite position for every vertex to start from");
   p.drop_job();
-  p.has_factor = p.settled = false;
+  p.has_factor = false;
   p.forget_curvature();
   p.pushes.clear();
-  p.system.load(positions, p.x.get());
-  p.positions = positions;
-  p.remember_targets();
+  p.start_from(positions);
 }
 
 const MatrixX3d& TissueSolver::positions() const {

@@ -448,10 +448,11 @@ int BlockCholesky::factorise(const BlockMatrix& A, bool parallel) {
   values.prepare(plan);
   for (int j = 0; j < plan.n; ++j) {
     const float* block = A.value.data() + 9 * static_cast<std::ptrdiff_t>(A.start[static_cast<std::size_t>(j)]);
-    for (int k = 0; k < 3; ++k) {
-      if (!(block[4 * k] > 0)) return -1;
-      values.diagonal[static_cast<std::size_t>(3 * j + k)] = block[4 * k];
-    }
+    const float largest = std::max({std::abs(block[0]), std::abs(block[4]), std::abs(block[8])});
+    if (!(largest > 0) || !std::isfinite(largest)) return -1;
+    constexpr float least = 1e-3F;
+    for (int k = 0; k < 3; ++k)
+      values.diagonal[static_cast<std::size_t>(3 * j + k)] = std::max(std::abs(block[4 * k]), least * largest);
   }
   const auto factorise_node = [&](const Plan::Node& node, bool wide) {
     const auto bin = static_cast<std::size_t>(node.bin);

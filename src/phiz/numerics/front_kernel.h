@@ -24,7 +24,7 @@ struct Front {
   float* L2 = nullptr;                ///< whole_groups(r) x p
   float* inverse_diagonal = nullptr;  ///< p
   float* sign = nullptr;              ///< p: of the pivots, 1 or -1
-  const float* diagonal = nullptr;    ///< p: of the matrix, positive
+  const float* diagonal = nullptr;    ///< p: size of that of the matrix, positive
 };
 
 /// Factorises the own rows of F (whole_groups(p) + whole_groups(r) rows, p columns; rows below start at a group) as L S
