@@ -67,7 +67,8 @@ TEST(Usage, MistakesOnTheCommandLineExitWithTwo) {
 TEST(Usage, AMistakeIsNamedInOneLineWithWhatWouldBeRight) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> mistakes = {
       {{"animat", "head.phiz", PHIZ_PERFORMANCE, "-o", "take.phiz"}, "no 'phiz animat'; did you mean 'animate'?"},
-      {{"nonsense"}, "no 'phiz nonsense'; known: template, animate, export, inspect, render, bench; see phiz --help"},
+      {{"nonsense"},
+       "no 'phiz nonsense'; known: template, animate, simulate, export, inspect, render, bench; see phiz --help"},
       {{"template", "bulitin", "-o", "x.phiz"}, "no 'phiz template bulitin'; did you mean 'builtin'?"},
       {{"template"}, "phiz template needs one of these words: build, builtin, person, check; see phiz template --help"},
       {{"template", "builtin", "--sise=preview", "-o", "x.phiz"}, "no option '--sise'; did you mean '--size'?"},
