@@ -51,7 +51,8 @@ TEST(Export, GlbPlaysInBlender) {
   const ScratchFolder scratch;
   export_take(scratch / "take.glb");
   const Outcome outcome = run_program({"blender", "-b", "--factory-startup", "--python-exit-code", "1", "--python",
-                                       "tests/app/check_glb_blender.py", "--", scratch / "take.glb", "30"});
+                                       std::filesystem::absolute("tests/app/check_glb_blender.py").string(), "--",
+                                       scratch / "take.glb", "30"});
   ASSERT_EQ(outcome.code, 0) << outcome.out << outcome.err;
   const std::size_t line = outcome.out.find("PHIZ ");
   ASSERT_NE(line, std::string::npos) << outcome.out;
