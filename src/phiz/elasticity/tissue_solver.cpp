@@ -55,12 +55,12 @@ struct Step {
   double contact_work = 0;  ///< of the contact forces along p
 };
 
-VectorXd checked_options(const TissueSolverOptions& o) {
+const TissueSolverOptions& checked(const TissueSolverOptions& o) {
   if (!(o.step_tolerance > 0) || !(o.residual_tolerance > 0) || !(o.penetration_tolerance > 0) ||
       o.max_iterations < 1 || o.history < 0 || o.refresh_iterations < 1 || o.refresh_solves < 1 ||
       !(o.longest_step > 0) || !(o.longest_lead > 0))
     reject("tissue solver options", "tolerances, steps and counts must be positive");
-  return {};
+  return o;
 }
 
 }  // namespace
@@ -96,7 +96,7 @@ struct TissueSolver::Parts {
   int job_due = -1;
 
   Parts(const TissueBody& body, const TissueSolverOptions& given)
-      : options((checked_options(given), given)),
+      : options(checked(given)),
         system(body),
         factor(system.pattern),
         spare(factor.twin()),

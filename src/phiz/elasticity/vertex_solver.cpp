@@ -12,6 +12,7 @@
 #include "phiz/core/parallel.h"
 #include "phiz/elasticity/panel_kernel.h"
 #include "phiz/elasticity/vector_kernel.h"
+#include "phiz/numerics/block_cholesky.h"
 
 namespace phiz {
 
@@ -62,16 +63,8 @@ constexpr int bins = 4;
 }  // namespace
 
 VectorXi elimination_order(const SparseMatrixd& pattern) {
-  Cholmod c;
-  c.common.nmethods = 1;
-  c.common.method[0].ordering = CHOLMOD_METIS;
-  c.common.supernodal = CHOLMOD_SUPERNODAL;
-  LowerTriangle lower(pattern);
-  cholmod_factor* L = cholmod_analyze(&lower.sparse, &c.common);
-  if (L == nullptr) fail("cannot order the elastic system");
-  VectorXi order = Eigen::Map<const VectorXi>(static_cast<const int*>(L->Perm), pattern.rows());
-  cholmod_free_factor(&L, &c.common);
-  return order;
+  const LowerTriangle lower(pattern);
+  return elimination_order(BlockMatrix{lower.start, lower.row, {}});
 }
 
 struct VertexSolver::Factor {
