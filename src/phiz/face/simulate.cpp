@@ -69,8 +69,6 @@ class Player {
   /// `first`: what the first frame asks for.
   void begin(const HeadTemplate& head, const TakeFrame& first, double frame_rate) {
     Trace* const trace = std::exchange(simulation_.solve_options().trace, nullptr);
-    // A little way first: from an equilibrium the solver goes on in parts. Then things come near.
-    simulation_.settle(0.05 * first.part_weights, first.head);
     simulation_.settle(first.part_weights, first.head);
     double earliest = first.time;
     for (const SimulateObject& object : options_.objects) {
