@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,13 @@ namespace {
 
 using test::preview_head;
 
+/// With all slides that the head's attachments name.
 const HeadTissue& tissue() {
-  static const HeadTissue instance = head_tissue(preview_head());
+  static const HeadTissue instance = [] {
+    TissueOptions options;
+    options.slide_reach = std::numeric_limits<double>::infinity();
+    return head_tissue(preview_head(), options);
+  }();
   return instance;
 }
 
@@ -69,7 +75,6 @@ TEST(HeadTissue, IsWhatTheHeadIsMadeOf) {
 
 TEST(HeadTissue, SlidesEndWhereNoMuscleIsNear) {
   TissueOptions options;
-  options.slide_reach = 0.02;
   const HeadTissue held = head_tissue(preview_head(), options);
   EXPECT_LT(held.body.slides.size(), tissue().body.slides.size());
   const auto top = std::max_element(tissue().body.slides.begin(), tissue().body.slides.end(),

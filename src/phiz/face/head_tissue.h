@@ -2,7 +2,6 @@
 /// The flesh of a head as muscle and passive tissue (Ichim et al. 2017, sections 3 and 4; phace.md sections 3, 4, 11).
 #pragma once
 
-#include <limits>
 #include <vector>
 
 #include "phiz/anatomy/head_template.h"
@@ -22,7 +21,7 @@ struct TissueOptions {
   /// Flesh slides on bone only within this distance from a muscle of expression, metres; beyond, it is pinned. The
   /// scalp is held by its aponeurosis, which the model lacks: free, it slips over the skull by centimetres when a head
   /// shakes.
-  double slide_reach = std::numeric_limits<double>::infinity();
+  double slide_reach = 0.02;
 };
 
 struct HeadTissue {

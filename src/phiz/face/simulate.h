@@ -28,7 +28,6 @@ struct Gusts {
 };
 
 struct SimulateOptions : PlayOptions {
-  SimulateOptions() { muscles.tissue.slide_reach = 0.02; }
   MuscleOptions muscles;
   Gusts gusts;
   std::vector<SimulateObject> objects;
