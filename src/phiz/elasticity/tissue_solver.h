@@ -39,6 +39,8 @@ struct TissueSolverCounts {
   int solves = 0, iterations = 0, factorisations = 0, projections = 0;
 };
 
+class TissueEngine;
+
 class TissueSolver {
  public:
   /// Orders and analyses; takes some hundred milliseconds. Throws phiz::Error(bad_input) for malformed bodies and
@@ -80,8 +82,7 @@ class TissueSolver {
   TissueSolverCounts counts() const;
 
  private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  std::unique_ptr<TissueEngine> engine_;
 };
 
 }  // namespace phiz
