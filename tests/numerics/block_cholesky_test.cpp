@@ -106,6 +106,33 @@ TEST(BlockCholesky, SeveralSidesAreSolvedAsOne) {
   }
 }
 
+TEST(BlockCholesky, ARoundedFactorIsNearlyRightAndTheSameInBothHalves) {
+  for (const auto& [n, depth] : {std::pair{1, 1}, {4, 3}, {9, 4}, {14, 6}}) {
+    const System system = random_system(n, depth, 15);
+    BlockCholesky factor(system.A, FactorStorage::rounded);
+    ASSERT_EQ(factor.factorise(system.A), 0);
+    const Eigen::VectorXf b = random_floats(system.dense.rows(), 16), a = random_floats(system.dense.rows(), 17);
+    Eigen::VectorXf x = b;
+    factor.solve(x.data());
+    const double residual = (system.dense * x.cast<double>() - b.cast<double>()).norm() / b.cast<double>().norm();
+    EXPECT_LT(residual, 0.03) << n;
+    EXPECT_GT(residual, 1e-5) << n;
+    // a . x = (L^-1 a) . (L^-1 b) for the one rounded L.
+    Eigen::VectorXf u = a, v = b;
+    factor.forward(u.data());
+    factor.forward(v.data());
+    EXPECT_NEAR(u.cast<double>().dot(v.cast<double>()), a.cast<double>().dot(x.cast<double>()),
+                2e-6 * u.norm() * v.norm());
+    // Iterations correct what rounding did.
+    for (int round = 0; round < 6; ++round) {
+      Eigen::VectorXf rest = (b.cast<double>() - system.dense * x.cast<double>()).cast<float>();
+      factor.solve(rest.data());
+      x += rest;
+    }
+    EXPECT_LT((system.dense * x.cast<double>() - b.cast<double>()).norm(), 2e-6 * b.cast<double>().norm()) << n;
+  }
+}
+
 TEST(BlockCholesky, HasTheSameBitsForAnyThreadCountAndForItsTwin) {
   const System system = random_system(14, 6, 9);
   const Eigen::VectorXf b = random_floats(system.dense.rows(), 4);

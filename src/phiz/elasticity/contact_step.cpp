@@ -92,6 +92,7 @@ VectorXd ContactStep::operator()(const ContactState& state, double friction, Eig
             if (length > limit) next.col(i).tail<2>() *= limit / length;
           }
           forces = next;
+          is_exact_ = kind == Stiffness::exact;
           return p;
         }
       }
@@ -99,6 +100,7 @@ VectorXd ContactStep::operator()(const ContactState& state, double friction, Eig
     }
   }
   forces.setZero();
+  is_exact_ = false;
   return -state.gradient;
 }
 

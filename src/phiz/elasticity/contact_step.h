@@ -30,6 +30,9 @@ class ContactStep {
   /// after the step.
   VectorXd operator()(const ContactState& state, double friction, Eigen::Matrix3Xd& forces);
 
+  /// Whether the last step used the true Hessian, which was positive definite then; true before the first one.
+  bool is_exact() const { return is_exact_; }
+
  private:
   bool factorise(const SparseMatrixd& H);
   VectorXd solve(const ContactState& state, const VectorXd& gradient, double friction, Eigen::Matrix3Xd& forces) const;
@@ -37,6 +40,7 @@ class ContactStep {
   const TissueEnergy& energy_;
   std::optional<SparseCholesky> factor_;
   SparseMatrixd factorised_;  ///< for its pattern
+  bool is_exact_ = true;
 };
 
 }  // namespace phiz

@@ -14,14 +14,14 @@ namespace {
 /// Iterations before steps that turn back are relaxed.
 constexpr int settle = 5;
 /// Where more iterations than this are to be expected on an old factor, a new one is cheaper.
-constexpr double cheap_iterations = 3;
+constexpr double cheap_iterations = 6;
+constexpr int tried_iterations = 2;  ///< on the old one, before that is judged
 /// A factor that had so many iterations without convergence is renewed in any case.
 constexpr int patience = 8;
 /// Of the first corrections after predictors, as shares of the predictors' steps, the largest of so many decides
 /// whether the next one is worth making.
 constexpr std::size_t remembered_shares = 6;
 constexpr int most_uncorrected = 4;  ///< solves in a row
-///< solves in a row
 /// Relative error of the energy.
 constexpr double energy_rounding = 1e-7;
 
@@ -99,6 +99,7 @@ SolveStatistics TissueEngine::descend(ContactScene* scene, double lead, double s
   double last_length2 = 0, relaxation = 1;
   double scale2 = 0;
   double energy = system.evaluate(x.get(), g.get(), &scale2);
+  forces_at_x = true;
   bool is_judged = false;
   const auto judge = [&](double reach) {
     is_judged = true;
@@ -163,7 +164,7 @@ SolveStatistics TissueEngine::descend(ContactScene* scene, double lead, double s
     const double rate = std::clamp(seen / std::max(last_seen, 1e-12), 0.05, 0.9);
     const double expected = std::log(std::max(seen / step_tolerance, 1.0)) / -std::log(rate);
     last_seen = seen;
-    if (!std::isfinite(reach) || (!fresh && expected > cheap_iterations && on_factor > 1)) {
+    if (!std::isfinite(reach) || (!fresh && expected > cheap_iterations && on_factor > tried_iterations)) {
       if (fresh) break;
       contact.multipliers = before;
       renew_factor();
@@ -192,6 +193,7 @@ SolveStatistics TissueEngine::descend(ContactScene* scene, double lead, double s
     for (int halving = 0; halving < (fresh ? 16 : 2) && std::isfinite(reach); ++halving, alpha *= 0.5) {
       advance(x.get(), step.p.get(), alpha, trial.get());
       next_energy = system.evaluate(trial.get(), next_g.get(), &next_scale2);
+      forces_at_x = false;
       if (next_energy - alpha * contact_work <= energy - 1e-4 * alpha * decrease + rounding) {
         accepted = true;
         break;
@@ -206,6 +208,7 @@ SolveStatistics TissueEngine::descend(ContactScene* scene, double lead, double s
       }
       system.put_on_slides(x.get());  // the energy is as low as rounding lets it be seen
       system.evaluate(x.get(), g.get(), &scale2);
+      forces_at_x = true;
       judge(seen);
       statistics.last_step = seen;
       break;
@@ -213,6 +216,7 @@ SolveStatistics TissueEngine::descend(ContactScene* scene, double lead, double s
     note(alpha, reach);
     is_judged = false;
     std::copy_n(trial.get(), 4 * system.rows, x.get());
+    forces_at_x = true;
     std::swap(g, next_g);
     energy = next_energy;
     scale2 = next_scale2;
@@ -249,6 +253,7 @@ SolveStatistics TissueEngine::descend(ContactScene* scene, double lead, double s
     system.put_on_slides(x.get());
     contact = detect(scene, x.get(), 0);
     energy = system.evaluate(x.get(), g.get(), &scale2);
+    forces_at_x = true;
     judge(statistics.last_step);
   }
   statistics.energy = energy;

@@ -14,6 +14,7 @@ namespace {
 
 /// How far bones move, metres, in the difference that tells what their motion does to the forces.
 constexpr double probe = 1e-4;
+constexpr double least_motion = 1e-9;  ///< of bones, metres
 
 const TissueSolverOptions& checked(const TissueSolverOptions& o) {
   if (!(o.step_tolerance > 0) || !(o.residual_tolerance > 0) || !(o.penetration_tolerance > 0) ||
@@ -28,7 +29,7 @@ const TissueSolverOptions& checked(const TissueSolverOptions& o) {
 TissueEngine::TissueEngine(const TissueBody& body, const TissueSolverOptions& given)
     : options(checked(given)),
       system(body),
-      factor(system.pattern),
+      factor(system.pattern, FactorStorage::rounded),
       spare(factor.twin()),
       A(system.pattern),
       spare_A(system.pattern),
@@ -48,6 +49,7 @@ TissueEngine::TissueEngine(const TissueBody& body, const TissueSolverOptions& gi
 
 void TissueEngine::start_from(const MatrixX3d& at) {
   positions = at;
+  forces_at_x = false;
   system.load(at, x.get());
   system.put_on_slides(x.get());
   settled = at == system.body.rest;
@@ -72,23 +74,31 @@ double TissueEngine::predict(const MatrixX3d& pins, ContactScene* scene, double 
     Eigen::Map<Vector3d>(moved.get() + 4 * r) = pins.row(system.vertex_of[r]).transpose();
   const std::vector<SlidingRow> sliding_before = system.sliding;
   system.put_on_slides(moved.get());
-  double farthest2 = 0;
-  for (std::ptrdiff_t r = 0; r < system.rows; ++r)
-    farthest2 = std::max(
-        farthest2,
-        (Eigen::Map<const Vector3d>(moved.get() + 4 * r) - Eigen::Map<const Vector3d>(x.get() + 4 * r)).squaredNorm());
-  const double farthest = std::sqrt(farthest2);
-  system.evaluate(x.get(), g.get());
-  if (farthest > 0) {
+  std::vector<char> moves(static_cast<std::size_t>(system.rows), 0);
+  double farthest = 0;
+  for (std::ptrdiff_t r = 0; r < system.rows; ++r) {
+    const double way =
+        (Eigen::Map<const Vector3d>(moved.get() + 4 * r) - Eigen::Map<const Vector3d>(x.get() + 4 * r)).norm();
+    moves[static_cast<std::size_t>(r)] = way > least_motion;
+    farthest = std::max(farthest, way);
+  }
+  if (forces_at_x)
+    system.evaluate_again(system.muscle_chunks(), x.get(), g.get());
+  else
+    system.evaluate(x.get(), g.get());
+  if (farthest > least_motion) {
     const double share = std::min(1.0, probe / farthest);
     for (std::ptrdiff_t i = 0; i < 4 * system.rows; ++i)
       trial[static_cast<std::size_t>(i)] =
           x[static_cast<std::size_t>(i)] +
           share * (moved[static_cast<std::size_t>(i)] - x[static_cast<std::size_t>(i)]);
-    system.evaluate(trial.get(), next_g.get());
+    const std::vector<int> chunks =
+        system.chunks_with([&moves](int row) { return moves[static_cast<std::size_t>(row)] != 0; });
+    system.evaluate_again(chunks, trial.get(), next_g.get());
     for (std::ptrdiff_t i = 0; i < 4 * system.free; ++i)
       g[static_cast<std::size_t>(i)] += (next_g[static_cast<std::size_t>(i)] - g[static_cast<std::size_t>(i)]) / share;
   }
+  forces_at_x = false;
   if (!has_factor || factor_inverse_time_step2 != system.inverse_time_step2) {
     drop_job();
     factorise_now(x.get(), g.get());

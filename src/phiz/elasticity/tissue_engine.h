@@ -65,7 +65,8 @@ class TissueEngine {
   std::vector<float> solved_stretch;
   std::vector<Slide> solved_slides;
   std::vector<Slide> rest_slides;
-  bool settled = true;  ///< the state is near an equilibrium, from which a predictor makes sense
+  bool settled = true;       ///< the state is near an equilibrium, from which a predictor makes sense
+  bool forces_at_x = false;  ///< the last evaluation was at x, with the loads and stretches of then
   bool has_factor = false, fresh = false;
   double factor_inverse_time_step2 = 0;
   int served = 0;

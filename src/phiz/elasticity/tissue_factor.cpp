@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "phiz/core/error.h"
+#include "phiz/core/parallel.h"
 #include "phiz/elasticity/tissue_engine.h"
 
 namespace phiz {
@@ -9,7 +10,7 @@ namespace phiz {
 namespace {
 
 /// Solves between the state that a factor is made at in the background and its first use.
-constexpr int factor_delay = 2;
+constexpr int factor_delay = 4;
 
 }  // namespace
 
@@ -44,7 +45,7 @@ void TissueEngine::start_job() {
   ++counts.factorisations;
   factor_inverse_time_step2 = system.inverse_time_step2;
   if (options.background)
-    job = std::async(std::launch::async, std::move(work));
+    job = in_background(std::move(work));
   else
     job_result = work();
 }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "phiz/core/error.h"
+#include "phiz/core/random.h"
 #include "phiz/elasticity/contact_step.h"
 #include "phiz/elasticity/static_residual.h"
 #include "phiz/geometry/operators.h"
@@ -20,6 +21,7 @@ using Clock = std::chrono::steady_clock;
 
 /// With fixed planes, contacts that push may be this far from touching, and slip this far from where friction says.
 constexpr double gap_tolerance = 1e-9;  // metres
+constexpr int most_nudges = 3;
 
 double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -65,6 +67,9 @@ class StaticSolve {
   bool solve_with_planes(double tolerance);
   ContactState evaluate(double& scale) const;
   double residual(const ContactState& state, double scale) const;
+  /// Where the Hessian was not positive definite to the end, forces may be in balance on a saddle, e.g. of a flattened
+  /// body: moves a little off it.
+  void leave_saddle(const FreeMotion& motion);
   /// How far contacts are from touching where they push, and from slipping the way that friction says, metres.
   double disagreement(const ContactState& state, double scale) const;
   /// Takes as much of the step p as lowers the merit. Returns the share, 0 for none.
@@ -90,7 +95,7 @@ class StaticSolve {
   Eigen::Matrix3Xd forces_;  ///< of the contacts with the planes, each in its frame
   double penalty_ = 0;       ///< newtons, more than any pressure
   double value_ = 0;
-  int round_ = 0;
+  int round_ = 0, nudges_ = 0;
   SolveStatistics statistics_;
   Clock::time_point start_ = Clock::now();
 };
@@ -221,13 +226,25 @@ double StaticSolve::search(const ContactState& state, const VectorXd& p, double&
   return 0;
 }
 
+void StaticSolve::leave_saddle(const FreeMotion& motion) {
+  constexpr double distance = 1e-6;  // metres
+  Random random(static_cast<std::uint64_t>(++nudges_));
+  x_ += distance * motion.expanded(VectorXd::NullaryExpr(motion.size(), [&random] { return random.normal(); }));
+  put_on_slides(energy_.body(), x_);
+  value_ = energy_.value(x_);
+}
+
 bool StaticSolve::solve_with_planes(double tolerance) {
   for (;;) {
     double scale = 0;
     const ContactState state = evaluate(scale);
     statistics_.residual = residual(state, scale);
     statistics_.contacts = static_cast<int>((forces_.row(0).array() > 0).count());
-    if (statistics_.residual <= tolerance && disagreement(state, scale) <= gap_tolerance) return true;
+    if (statistics_.residual <= tolerance && disagreement(state, scale) <= gap_tolerance) {
+      if (step_.is_exact() || nudges_ == most_nudges) return true;
+      leave_saddle(state.motion);
+      continue;
+    }
     if (statistics_.iterations >= options_.max_iterations) return false;
     // Planes hold for where they were found.
     if (contacts_ != nullptr && (x_ - detected_at_).rowwise().norm().maxCoeff() > contacts_->options().margin)

@@ -98,6 +98,7 @@ TissueSystem::TissueSystem(const TissueBody& given) : body((validate(given), giv
     incidence_[static_cast<std::size_t>(next[static_cast<std::size_t>(blocks.chunk_rows[i])]++)] =
         static_cast<int>(4 * i);
   sums_ = hwy::AllocateAligned<float>(4 * blocks.chunk_rows.size());
+  energies_.assign(static_cast<std::size_t>(blocks.chunks()), 0.0);
 
   sliding_of.assign(static_cast<std::size_t>(free), -1);
   for (std::size_t s = 0; s < body.slides.size(); ++s) {
@@ -145,9 +146,40 @@ void TissueSystem::set_forces(const MatrixX3d& forces) {
 }
 
 double TissueSystem::evaluate(const double* x, double* gradient, double* scale2) {
-  const double elastic = parallel_sum(blocks.chunks(), 1, [&](std::ptrdiff_t chunk, std::ptrdiff_t) {
-    return evaluate_tissue(blocks, x, chunk, sums_.get() + 4 * blocks.chunk_start[static_cast<std::size_t>(chunk)]);
-  });
+  parallel_for(
+      blocks.chunks(), [&](std::ptrdiff_t chunk) { evaluate_chunk(chunk, x); }, 1);
+  return add_up(x, gradient, scale2);
+}
+
+double TissueSystem::evaluate_again(const std::vector<int>& chunks, const double* x, double* gradient) {
+  parallel_for(
+      static_cast<std::ptrdiff_t>(chunks.size()),
+      [&](std::ptrdiff_t i) { evaluate_chunk(chunks[static_cast<std::size_t>(i)], x); }, 1);
+  return add_up(x, gradient, nullptr);
+}
+
+void TissueSystem::evaluate_chunk(std::ptrdiff_t chunk, const double* x) {
+  const auto c = static_cast<std::size_t>(chunk);
+  energies_[c] = evaluate_tissue(blocks, x, chunk, sums_.get() + 4 * blocks.chunk_start[c]);
+}
+
+std::vector<int> TissueSystem::muscle_chunks() const {
+  std::vector<int> chunks;
+  for (int c = 0; c * TissueBlocks::chunk < blocks.muscle_blocks; ++c) chunks.push_back(c);
+  return chunks;
+}
+
+std::vector<int> TissueSystem::chunks_with(const std::function<bool(int row)>& is) const {
+  std::vector<int> chunks;
+  for (int c = 0; c < blocks.chunks(); ++c)
+    if (std::any_of(blocks.chunk_rows.begin() + blocks.chunk_start[static_cast<std::size_t>(c)],
+                    blocks.chunk_rows.begin() + blocks.chunk_start[static_cast<std::size_t>(c) + 1], is))
+      chunks.push_back(c);
+  return chunks;
+}
+
+double TissueSystem::add_up(const double* x, double* gradient, double* scale2) {
+  const double elastic = std::accumulate(energies_.begin(), energies_.end(), 0.0);
   std::vector<double> scales(static_cast<std::size_t>((free + row_grain - 1) / row_grain), 0.0);
   const double loads = parallel_sum(rows, row_grain, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     double work = 0;

@@ -3,6 +3,7 @@
 /// then pinned ones and those that belong to no tet) with four doubles per row. Not a public header.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "phiz/elasticity/tissue_kernel.h"
@@ -55,6 +56,11 @@ struct TissueSystem {
   /// Energy, joules, and its gradient at the free rows, four per row; not restricted by slides. `scale2`, if not null:
   /// sum over the free rows of the squared sum of the norms of the tets' forces, at least least_scale2.
   double evaluate(const double* x, double* gradient, double* scale2 = nullptr);
+  /// The same where only these chunks of tets changed since the last evaluation.
+  double evaluate_again(const std::vector<int>& chunks, const double* x, double* gradient);
+  /// Chunks with muscle; those with a row for which `is` says so.
+  std::vector<int> muscle_chunks() const;
+  std::vector<int> chunks_with(const std::function<bool(int row)>& is) const;
   /// Puts sliding rows on their surfaces and finds the directions that they have there.
   void put_on_slides(double* x);
   /// Removes what slides do not let through.
@@ -68,7 +74,11 @@ struct TissueSystem {
                 BlockMatrix& A) const;
 
  private:
+  void evaluate_chunk(std::ptrdiff_t chunk, const double* x);
+  double add_up(const double* x, double* gradient, double* scale2);
+
   hwy::AlignedFreeUniquePtr<float[]> sums_;       ///< of the chunks
+  std::vector<double> energies_;                  ///< of the chunks, joules
   std::vector<int> incidence_start_, incidence_;  ///< entries of sums_ that add up at each row
   std::vector<int> source_start_, source_;        ///< per block of the pattern: 2 (10 slot + pair) + transposed
 };

@@ -19,46 +19,35 @@ namespace {
 constexpr std::size_t chunk = 512;  ///< active tets that are blended together
 constexpr double least_weight = 1e-5;
 
-using Change = std::array<float, 6>;
-
 void require_weights(const VectorXd& weights, std::size_t shapes) {
   constexpr double most = 1e6;
   if (weights.size() != static_cast<Eigen::Index>(shapes) || !(weights.array().abs() <= most).all())
     reject("activation", "needs one weight per shape, none larger than a million");
 }
 
-/// I + change, with eigenvalues within the bounds.
-Matrix3d bounded_stretch(const Change& c) {
-  Matrix3d S;
-  S << 1 + c[0], c[3], c[4], c[3], 1 + c[1], c[5], c[4], c[5], 1 + c[2];
-  const double square = (S - Matrix3d::Identity()).squaredNorm();
-  constexpr double safe = 1 - least_activation;  // no eigenvalue is farther from 1 than the norm
+/// Brings the eigenvalues of I + change back to their bounds; out: the six numbers of the stretch.
+void bound_stretch(const float* change, float* out) {
+  static constexpr float unit[6] = {1, 1, 1, 0, 0, 0};
+  float square = 0;
+  for (int k = 0; k < 6; ++k) {
+    out[k] = unit[k] + change[k];
+    square += (k < 3 ? 1.0F : 2.0F) * change[k] * change[k];
+  }
+  constexpr float safe = 1 - least_activation;  // no eigenvalue is farther from 1 than the norm
   static_assert(safe < most_activation - 1);
-  if (square <= safe * safe) return S;
+  if (square <= safe * safe) return;
+  Matrix3d S;
+  S << out[0], out[3], out[4], out[3], out[1], out[5], out[4], out[5], out[2];
   Eigen::SelfAdjointEigenSolver<Matrix3d> eigen;
   eigen.computeDirect(S);
   const Vector3d& s = eigen.eigenvalues();
-  if (s[0] >= least_activation && s[2] <= most_activation) return S;
+  if (s[0] >= least_activation && s[2] <= most_activation) return;
   const Vector3d bounded = s.cwiseMax(least_activation).cwiseMin(most_activation);
-  const Matrix3d out = eigen.eigenvectors() * bounded.asDiagonal() * eigen.eigenvectors().transpose();
-  return 0.5 * (out + out.transpose());
+  const Vector6d a = activation_of(eigen.eigenvectors() * bounded.asDiagonal() * eigen.eigenvectors().transpose());
+  for (int k = 0; k < 6; ++k) out[k] = static_cast<float>(a[k]);
 }
 
 }  // namespace
-
-std::vector<ActivationShape> estimate_activations(const FaceModel& model, const HeadTissue& tissue) {
-  std::vector<char> active(static_cast<std::size_t>(model.head.volume.T.rows()), 0);
-  for (Eigen::Index t = 0; t < tissue.soft.size(); ++t)
-    active[static_cast<std::size_t>(tissue.soft[t])] = tissue.muscle[t] > 0;
-  std::vector<ActivationShape> shapes;
-  for (const VolumetricShape& shape : model.shapes) {
-    std::vector<Eigen::Index> rows;
-    for (Eigen::Index i = 0; i < shape.tets.size(); ++i)
-      if (active[static_cast<std::size_t>(shape.tets[i])]) rows.push_back(i);
-    shapes.push_back({shape.name, shape.jaw, shape.tets(rows), shape.stretch(rows, Eigen::all)});
-  }
-  return shapes;
-}
 
 JawPose blend_jaw(const JawJoint& joint, const std::vector<ActivationShape>& shapes, const VectorXd& weights) {
   require_weights(weights, shapes.size());
@@ -69,9 +58,11 @@ JawPose blend_jaw(const JawJoint& joint, const std::vector<ActivationShape>& sha
 
 ActivationBlender::ActivationBlender(const std::vector<ActivationShape>& shapes, const HeadTissue& tissue)
     : tets_(static_cast<std::size_t>(tissue.soft.size())) {
+  std::vector<int> active;
   for (std::size_t t = 0; t < tets_; ++t)
-    if (tissue.muscle[static_cast<Eigen::Index>(t)] > 0) active_.push_back(static_cast<int>(t));
-  const std::size_t chunks = (active_.size() + chunk - 1) / chunk;
+    if (tissue.muscle[static_cast<Eigen::Index>(t)] > 0) active.push_back(static_cast<int>(t));
+  active_ = Eigen::Map<const VectorXi>(active.data(), static_cast<Eigen::Index>(active.size()));
+  const std::size_t chunks = (active.size() + chunk - 1) / chunk;
   for (const ActivationShape& shape : shapes) {
     if (shape.change.rows() != shape.tets.size() || !shape.change.allFinite() ||
         !std::is_sorted(shape.tets.begin(), shape.tets.end()))
@@ -79,9 +70,9 @@ ActivationBlender::ActivationBlender(const std::vector<ActivationShape>& shapes,
     Piece piece;
     std::size_t at = 0;
     for (Eigen::Index i = 0; i < shape.tets.size(); ++i) {
-      while (at < active_.size() && tissue.soft[active_[at]] < shape.tets[i]) ++at;
-      if (at == active_.size()) break;
-      if (tissue.soft[active_[at]] != shape.tets[i]) continue;
+      while (at < active.size() && tissue.soft[active[at]] < shape.tets[i]) ++at;
+      if (at == active.size()) break;
+      if (tissue.soft[active[at]] != shape.tets[i]) continue;
       piece.tets.push_back(static_cast<int>(at));
       piece.change.insert(piece.change.end(), shape.change.row(i).begin(), shape.change.row(i).end());
     }
@@ -93,32 +84,35 @@ ActivationBlender::ActivationBlender(const std::vector<ActivationShape>& shapes,
 }
 
 std::vector<Matrix3d> ActivationBlender::blend(const VectorXd& weights) const {
+  Stretches rows;
+  blend(weights, rows);
   std::vector<Matrix3d> stretches(tets_, Matrix3d::Identity());
-  blend(weights, stretches);
+  for (Eigen::Index i = 0; i < rows.rows(); ++i)
+    stretches[static_cast<std::size_t>(active_[i])] = activation_stretch(rows.row(i).transpose().cast<double>());
   return stretches;
 }
 
-void ActivationBlender::blend(const VectorXd& weights, std::vector<Matrix3d>& stretches) const {
+void ActivationBlender::blend(const VectorXd& weights, Stretches& stretches) const {
   require_weights(weights, pieces_.size());
-  if (stretches.size() != tets_) reject("activation", "needs a stretch for every tet of the tissue");
-  const auto chunks = static_cast<std::ptrdiff_t>((active_.size() + chunk - 1) / chunk);
+  stretches.resize(active_.size(), 6);
+  const auto count = static_cast<std::size_t>(active_.size());
+  const auto chunks = static_cast<std::ptrdiff_t>((count + chunk - 1) / chunk);
   parallel_for(
       chunks,
       [&](std::ptrdiff_t c) {
-        const std::size_t first = static_cast<std::size_t>(c) * chunk, end = std::min(first + chunk, active_.size());
-        std::array<Change, chunk> sum{};
+        const std::size_t first = static_cast<std::size_t>(c) * chunk, end = std::min(first + chunk, count);
+        std::array<float, 6 * chunk> sum{};
         for (std::size_t j = 0; j < pieces_.size(); ++j) {
           const auto w = static_cast<float>(weights[static_cast<Eigen::Index>(j)]);
           if (std::abs(w) < least_weight) continue;
           const Piece& piece = pieces_[j];
           for (std::size_t i = piece.start[static_cast<std::size_t>(c)];
                i < piece.start[static_cast<std::size_t>(c) + 1]; ++i) {
-            Change& to = sum[static_cast<std::size_t>(piece.tets[i]) - first];
+            float* to = sum.data() + 6 * (static_cast<std::size_t>(piece.tets[i]) - first);
             for (std::size_t k = 0; k < 6; ++k) to[k] += w * piece.change[6 * i + k];
           }
         }
-        for (std::size_t a = first; a < end; ++a)
-          stretches[static_cast<std::size_t>(active_[a])] = bounded_stretch(sum[a - first]);
+        for (std::size_t a = first; a < end; ++a) bound_stretch(sum.data() + 6 * (a - first), stretches.data() + 6 * a);
       },
       1);
 }
@@ -171,12 +165,12 @@ VectorXd paralysis(const HeadTemplate& head, const HeadTissue& tissue, const std
   return innervation(head, tissue, of_muscles).cwiseProduct(of_sides).cwiseMax(0).cwiseMin(1);
 }
 
-void scale_activation(const VectorXd& gain, std::vector<Matrix3d>& stretches) {
-  if (gain.size() != static_cast<Eigen::Index>(stretches.size())) reject("innervation", "needs one gain per tet");
+void scale_activation(const VectorXd& gain, Stretches& stretches) {
+  if (gain.size() != stretches.rows()) reject("innervation", "needs one gain per stretch");
   if (!(gain.array() >= 0 && gain.array() <= 1).all()) reject("innervation", "gains must be in [0, 1]");
-  for (std::size_t t = 0; t < stretches.size(); ++t) {
-    const double g = gain[static_cast<Eigen::Index>(t)];
-    stretches[t] = (1 - g) * Matrix3d::Identity() + g * stretches[t];
+  for (Eigen::Index i = 0; i < stretches.rows(); ++i) {
+    const auto g = static_cast<float>(gain[i]);
+    for (int k = 0; k < 6; ++k) stretches(i, k) = (k < 3 ? 1 - g : 0) + g * stretches(i, k);
   }
 }
 

@@ -11,20 +11,24 @@
 
 namespace phiz {
 
+/// Symmetric stretches, one per row: xx, yy, zz, xy, xz, yz.
+using Stretches = Eigen::Matrix<float, Eigen::Dynamic, 6, Eigen::RowMajor>;
+
 /// One expression as its muscles do it: a_j - a_neut of the tets that it moves, and the pose b_j of the jaw.
 struct ActivationShape {
   std::string name;
   JawPose jaw = JawPose::Zero();
-  VectorXi tets;                                                    ///< rows of HeadTemplate::volume.T, ascending
-  Eigen::Matrix<float, Eigen::Dynamic, 6, Eigen::RowMajor> change;  ///< xx, yy, zz, xy, xz, yz of S(a_j) - I
+  VectorXi tets;     ///< rows of HeadTemplate::volume.T, ascending
+  Stretches change;  ///< S(a_j) - I
 };
 
 /// Stretches that muscles may strive for; a blend beyond is brought back.
 constexpr double least_activation = 0.5, most_activation = 2;
 
 /// A kinematic estimate of the activations of a model's expressions: the muscles of a tet strive for the stretch that
-/// the tet has in the volumetric shape, S_j = I + V_j. It knows nothing of forces: passive tissue resists, so that the
-/// expressions come out weaker, and what is no muscle's work (air in the cheeks, the tongue) is missing.
+/// the tet has in the volumetric shape, S_j = I + V_j, averaged over some 4 mm of muscle around (screened diffusion of
+/// V_j): muscles do not fold where the sculpt of a tet does. It knows nothing of forces: passive tissue resists, so
+/// that the expressions come out weaker, and what is no muscle's work (air in the cheeks, the tongue) is missing.
 std::vector<ActivationShape> estimate_activations(const FaceModel& model, const HeadTissue& tissue);
 
 /// Pose of the jaw, b(w) = sum w_j b_j within the limits of the joint. `weights`: one per shape, else it throws as
@@ -42,8 +46,9 @@ class ActivationBlender {
   /// muscle. Symmetric and positive: eigenvalues outside of the bounds above are brought back to them. Throws
   /// phiz::Error(bad_input) unless there is one weight per shape, none beyond a million.
   std::vector<Matrix3d> blend(const VectorXd& weights) const;
-  /// The same into a vector of that size whose other tets are left alone.
-  void blend(const VectorXd& weights, std::vector<Matrix3d>& stretches) const;
+  /// The same for the tets that have muscle, tets().
+  void blend(const VectorXd& weights, Stretches& stretches) const;
+  const VectorXi& tets() const { return active_; }  ///< rows of body.tets, ascending
 
  private:
   struct Piece {
@@ -51,7 +56,7 @@ class ActivationBlender {
     std::vector<float> change;
     std::vector<std::size_t> start;  ///< of every chunk of active tets
   };
-  std::vector<int> active_;    ///< rows of body.tets
+  VectorXi active_;
   std::vector<Piece> pieces_;  ///< per shape
   std::size_t tets_ = 0;
 };
@@ -63,7 +68,7 @@ VectorXd innervation(const HeadTemplate& head, const HeadTissue& tissue, const V
 /// "right", the half of the head on that side of the person, with its half of the muscles that lie across the middle.
 /// Throws phiz::Error(usage) for other words.
 VectorXd paralysis(const HeadTemplate& head, const HeadTissue& tissue, const std::vector<std::string>& paralysed);
-/// I + gain (S - I) in place, gains in [0, 1].
-void scale_activation(const VectorXd& gain, std::vector<Matrix3d>& stretches);
+/// I + gain (S - I) in place, gains in [0, 1], one per row.
+void scale_activation(const VectorXd& gain, Stretches& stretches);
 
 }  // namespace phiz

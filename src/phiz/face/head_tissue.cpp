@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "phiz/face/head_tissue.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "phiz/anatomy/muscle_table.h"
 #include "phiz/core/error.h"
+#include "phiz/core/parallel.h"
 #include "phiz/face/bone_slides.h"
 #include "phiz/face/flesh.h"
 
@@ -47,6 +49,37 @@ void drop_far_slides(const HeadTemplate& head, double reach, std::vector<Slide>&
   });
 }
 
+/// Where bone is meshed far finer than flesh has to be, flesh and slides that are nearer than this to pinned bone are
+/// held by it: between them are only tets of some tenths of a millimetre, which snap from fold to fold, metres.
+constexpr double crowded = 1e-3;
+
+void hold_crowded(HeadTissue& tissue) {
+  TissueBody& body = tissue.body;
+  const MatrixX3d& V = body.rest;
+  std::vector<Eigen::Index> bone;
+  for (Eigen::Index v = 0; v < V.rows(); ++v)
+    if (body.pinned[static_cast<std::size_t>(v)] != 0) bone.push_back(v);
+  std::vector<Eigen::Index> nearest(static_cast<std::size_t>(V.rows()), -1);
+  parallel_for(
+      V.rows(),
+      [&](std::ptrdiff_t v) {
+        if (body.pinned[static_cast<std::size_t>(v)] != 0) return;
+        double least2 = crowded * crowded;
+        for (const Eigen::Index w : bone)
+          if (const double d2 = (V.row(v) - V.row(w)).squaredNorm(); d2 < least2) {
+            least2 = d2;
+            nearest[static_cast<std::size_t>(v)] = w;
+          }
+      },
+      64);
+  for (std::size_t v = 0; v < nearest.size(); ++v) {
+    if (nearest[v] < 0) continue;
+    body.pinned[v] = 1;
+    tissue.on_mandible[v] = tissue.on_mandible[static_cast<std::size_t>(nearest[v])];
+  }
+  std::erase_if(body.slides, [&](const Slide& s) { return body.pinned[static_cast<std::size_t>(s.vertex)] != 0; });
+}
+
 }  // namespace
 
 HeadTissue head_tissue(const HeadTemplate& head, const TissueOptions& options) {
@@ -71,18 +104,24 @@ HeadTissue head_tissue(const HeadTemplate& head, const TissueOptions& options) {
   body.slides = bone_slides(head);
   if (std::isfinite(options.slide_reach)) drop_far_slides(head, options.slide_reach, body.slides);
   body.pinned.resize(static_cast<std::size_t>(body.rest.rows()));
-  for (Eigen::Index v = 0; v < body.rest.rows(); ++v)
+  tissue.on_mandible.resize(body.pinned.size());
+  for (Eigen::Index v = 0; v < body.rest.rows(); ++v) {
     body.pinned[static_cast<std::size_t>(v)] = head.carrier[v] != static_cast<int>(Carrier::flesh);
+    tissue.on_mandible[static_cast<std::size_t>(v)] = head.carrier[v] == static_cast<int>(Carrier::mandible);
+  }
   for (const Slide& slide : body.slides) body.pinned[static_cast<std::size_t>(slide.vertex)] = 0;
+  hold_crowded(tissue);
   validate(body);
   return tissue;
 }
 
-void place_pins(const HeadTemplate& head, const TissueBody& body, const JawPose& pose, MatrixX3d& x) {
-  MatrixX3d bones = x;
-  place_bones(head, pose, bones);
-  for (Eigen::Index v = 0; v < x.rows(); ++v)
-    if (body.pinned[static_cast<std::size_t>(v)] != 0) x.row(v) = bones.row(v);
+void place_pins(const HeadTemplate& head, const HeadTissue& tissue, const JawPose& pose, MatrixX3d& x) {
+  const Eigen::Isometry3d jaw = jaw_transform(head.jaw, pose);
+  for (Eigen::Index v = 0; v < x.rows(); ++v) {
+    if (tissue.body.pinned[static_cast<std::size_t>(v)] == 0) continue;
+    const Vector3d rest = head.volume.V.row(v);
+    x.row(v) = tissue.on_mandible[static_cast<std::size_t>(v)] != 0 ? Vector3d(jaw * rest) : rest;
+  }
 }
 
 std::vector<Slide> place_slides(const HeadTemplate& head, const TissueBody& body, const JawPose& pose) {
@@ -94,12 +133,13 @@ std::vector<Slide> place_slides(const HeadTemplate& head, const TissueBody& body
 
 void place_jaw(const HeadTemplate& head, const HeadTissue& tissue, const JawPose& pose, TissueEnergy& energy,
                MatrixX3d& x) {
-  place_pins(head, tissue.body, pose, x);
+  place_pins(head, tissue, pose, x);
   energy.set_slides(place_slides(head, tissue.body, pose));
 }
 
-Eigen::Matrix<double, 3, 5> pin_rate(const HeadTemplate& head, int vertex, const JawPose& pose) {
-  if (head.carrier[vertex] != static_cast<int>(Carrier::mandible)) return Eigen::Matrix<double, 3, 5>::Zero();
+Eigen::Matrix<double, 3, 5> pin_rate(const HeadTemplate& head, const HeadTissue& tissue, int vertex,
+                                     const JawPose& pose) {
+  if (tissue.on_mandible[static_cast<std::size_t>(vertex)] == 0) return Eigen::Matrix<double, 3, 5>::Zero();
   return jaw_jacobian(head.jaw, pose, head.volume.V.row(vertex));
 }
 

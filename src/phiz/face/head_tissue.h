@@ -28,23 +28,26 @@ struct HeadTissue {
   VectorXi soft;  ///< rows of volume.T that body.tets are: soft_tets(head), ascending
   VectorXd
       muscle;  ///< per soft tet: share of its volume that muscles of expression and closers of the jaw fill, 0 to 1
-  TissueBody body;  ///< over all vertices of the volume, slides in the rest pose
+  TissueBody body;                ///< over all vertices of the volume, slides in the rest pose
+  std::vector<char> on_mandible;  ///< per vertex, where it is pinned: 1 if it goes with the mandible, 0: with the skull
 };
 
-/// Bone vertices are pinned, but those of head.attachments that slide. Flat tets are as soft as flesh_body() has them.
+/// Bone vertices are pinned, but those of head.attachments that slide; so is flesh within
+/// 1 mm of them. Flat tets are as soft as flesh_body() has them.
 /// A tet with a share f of muscle that is k times stiffer has the energy (1 - f) E_pass + f k E_act; the body says so
 /// as moduli times 1 - f + f k, of which the share f k / (1 - f + f k) is active. Throws phiz::Error(bad_input) for
 /// options or heads that make no body.
 HeadTissue head_tissue(const HeadTemplate& head, const TissueOptions& options = {});
 
 /// Moves the pinned rows of x (n x 3) to their places for a pose of the jaw.
-void place_pins(const HeadTemplate& head, const TissueBody& body, const JawPose& pose, MatrixX3d& x);
+void place_pins(const HeadTemplate& head, const HeadTissue& tissue, const JawPose& pose, MatrixX3d& x);
 /// The slides of the body (rest pose) in a pose of the jaw, in the same order.
 std::vector<Slide> place_slides(const HeadTemplate& head, const TissueBody& body, const JawPose& pose);
 /// Both, for a solve in that pose: pins in x, slides in the energy of tissue.body.
 void place_jaw(const HeadTemplate& head, const HeadTissue& tissue, const JawPose& pose, TissueEnergy& energy,
                MatrixX3d& x);
-/// Derivative of the place of a vertex of bone by the pose: zero for what the mandible does not carry.
-Eigen::Matrix<double, 3, 5> pin_rate(const HeadTemplate& head, int vertex, const JawPose& pose);
+/// Derivative of the place of a pinned vertex by the pose.
+Eigen::Matrix<double, 3, 5> pin_rate(const HeadTemplate& head, const HeadTissue& tissue, int vertex,
+                                     const JawPose& pose);
 
 }  // namespace phiz

@@ -29,6 +29,10 @@ MatrixX3d moved(const Eigen::Isometry3d& by, const MatrixX3d& x) {
   return (x * by.linear().transpose()).rowwise() + by.translation().transpose();
 }
 
+double milliseconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
 struct Object {
   int obstacle = -1;
   double radius = 0;  ///< of its vertices about its origin
@@ -58,7 +62,7 @@ struct MuscleSimulation::Parts {
   std::optional<VectorXd> innervated;
   MatrixX3d forces;
 
-  std::vector<Matrix3d> stretches;
+  Stretches stretches;  ///< of blender.tets()
   JawPose jaw = JawPose::Zero();
   VectorXd weights;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -75,10 +79,13 @@ struct MuscleSimulation::Parts {
         drawn_skin(head),
         mass(lumped_tet_mass(tissue.body.rest, tissue.body.tets, options.tissue.density)),
         solver(tissue.body, options.solve),
-        stretches(static_cast<std::size_t>(tissue.body.tets.rows()), Matrix3d::Identity()),
         weights(VectorXd::Zero(static_cast<Eigen::Index>(given.size()))),
         velocity(MatrixX3d::Zero(head.volume.V.rows(), 3)) {
     solver.watch(head.skin_vertices);
+  }
+
+  void require_static() const {
+    if (options.dynamic) fail("this simulation is dynamic", "use step() or make a static one");
   }
 
   ContactScene* scene() { return contacts ? &contacts->scene : nullptr; }
@@ -87,7 +94,8 @@ struct MuscleSimulation::Parts {
     if (w.size() != weights.size() || !w.allFinite())
       reject("expression weights", "expected " + std::to_string(weights.size()) + " finite numbers");
     blender.blend(w, stretches);
-    if (innervated) scale_activation(*innervated, stretches);
+    if (innervated) scale_activation((*innervated)(blender.tets()), stretches);
+    solver.set_activation(blender.tets(), stretches);
     jaw = blend_jaw(head.jaw, shapes, w);
     weights = w;
   }
@@ -107,10 +115,9 @@ struct MuscleSimulation::Parts {
 
   /// Solves for the present activations, jaw and pose, with objects on their way.
   SolveStatistics solve() {
-    solver.set_activation(stretches);
     solver.set_slides(place_slides(head, tissue.body, jaw));
     MatrixX3d pins = solver.positions();
-    place_pins(head, tissue.body, jaw, pins);
+    place_pins(head, tissue, jaw, pins);
     if (contacts) contacts->place_jaw(jaw_transform(head.jaw, jaw));
     // As the head sees them: they move, or it does.
     double longest = 0;
@@ -130,8 +137,27 @@ struct MuscleSimulation::Parts {
       object.place = object.next;
       object.seen = pose.inverse() * object.next;
     }
+    if (!statistics.converged && !options.dynamic && objects.empty()) {
+      statistics = solve_from_rest(pins, statistics);
+      iterations += statistics.iterations;
+    }
     statistics.iterations = iterations;
     return statistics;
+  }
+
+  /// Another try, which does not depend on where the face was before. The state of the `first` one stays if this is no
+  /// better.
+  SolveStatistics solve_from_rest(const MatrixX3d& pins, const SolveStatistics& first) {
+    const MatrixX3d before = solver.positions();
+    solver.restart(tissue.body.rest);
+    if (contacts) contacts->scene.forget();
+    const SolveStatistics second = solver.solve(pins, scene());
+    if (second.converged) return second;
+    solver.restart(before);
+    if (contacts) contacts->scene.forget();
+    SolveStatistics out = first;
+    out.iterations = second.iterations;
+    return out;
   }
 };
 
@@ -143,8 +169,13 @@ MuscleSimulation::MuscleSimulation(MuscleSimulation&&) noexcept = default;
 MuscleSimulation& MuscleSimulation::operator=(MuscleSimulation&&) noexcept = default;
 
 SolveStatistics MuscleSimulation::solve_static(const VectorXd& weights) {
+  const auto start = std::chrono::steady_clock::now();
+  parts_->require_static();
   parts_->set_weights(weights);
-  return solve_static(parts_->stretches, parts_->jaw);
+  parts_->apply_loads();
+  SolveStatistics statistics = parts_->solve();
+  statistics.milliseconds = milliseconds_since(start);
+  return statistics;
 }
 
 SolveStatistics MuscleSimulation::settle(const VectorXd& weights, const Eigen::Isometry3d& head) {
@@ -155,20 +186,20 @@ SolveStatistics MuscleSimulation::settle(const VectorXd& weights, const Eigen::I
   p.solver.set_inertia(0, {});
   p.apply_loads();
   SolveStatistics statistics = p.solve();
-  statistics.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  statistics.milliseconds = milliseconds_since(start);
   return statistics;
 }
 
 SolveStatistics MuscleSimulation::solve_static(const std::vector<Matrix3d>& stretches, const JawPose& jaw) {
   Parts& p = *parts_;
-  if (p.options.dynamic) fail("this simulation is dynamic", "use step() or make a static one");
+  p.require_static();
   if (!jaw.allFinite()) reject("pose of the jaw", "is not finite");
   const auto start = std::chrono::steady_clock::now();
-  if (&stretches != &p.stretches) p.stretches = stretches;
+  p.solver.set_activation(stretches);
   p.jaw = jaw;
   p.apply_loads();
   SolveStatistics statistics = p.solve();
-  statistics.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  statistics.milliseconds = milliseconds_since(start);
   return statistics;
 }
 
@@ -207,7 +238,7 @@ SolveStatistics MuscleSimulation::step(double dt, const VectorXd& weights, const
     total.iterations = iterations;
     total.converged = converged;
   }
-  total.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  total.milliseconds = milliseconds_since(start);
   return total;
 }
 

@@ -199,6 +199,7 @@ struct BlockCholesky::Plan {
   std::vector<int> top_vertices;
   std::vector<int> node_of;  ///< per vertex
   std::ptrdiff_t value_count = 0;
+  FactorStorage storage = FactorStorage::single;
   std::array<std::ptrdiff_t, bins + 1> arena{}, widest_own{}, tallest{};
   std::vector<int>
       destination;  ///< per block of the pattern: node and place are found from the column; row in its front
@@ -214,6 +215,7 @@ struct BlockCholesky::Plan {
 struct BlockCholesky::Values {
   Floats L, inverse_diagonal, sign;
   Floats diagonal;  ///< of the matrix
+  std::vector<std::uint16_t> rounded;
   std::array<Floats, bins + 1> arena, own;
   std::array<Floats, bins + 1> y, z;  ///< of the solves
   Floats outside[bins];               ///< what the nodes of a bin give to top vertices
@@ -222,7 +224,8 @@ struct BlockCholesky::Values {
       : L(zeros(plan.value_count)),
         inverse_diagonal(zeros(3 * plan.n)),
         sign(zeros(3 * plan.n)),
-        diagonal(zeros(3 * plan.n)) {
+        diagonal(zeros(3 * plan.n)),
+        rounded(plan.storage == FactorStorage::rounded ? static_cast<std::size_t>(plan.value_count) : 0) {
     for (std::size_t b = 0; b <= bins; ++b) {
       y[b] = zeros(most_sides * plan.tallest[b]);
       z[b] = zeros(most_sides * plan.tallest[b]);
@@ -237,14 +240,16 @@ struct BlockCholesky::Values {
       own[b] = zeros(plan.widest_own[b]);
     }
   }
-  Front front(const Plan::Node& node) const {
+  Front front(const Plan::Node& node) {
     return {node.p(),
             node.r(),
             L.get() + node.L1,
             L.get() + node.L2,
             inverse_diagonal.get() + 3 * node.first,
             sign.get() + 3 * node.first,
-            diagonal.get() + 3 * node.first};
+            diagonal.get() + 3 * node.first,
+            rounded.empty() ? nullptr : rounded.data() + node.L1,
+            rounded.empty() ? nullptr : rounded.data() + node.L2};
   }
 };
 
@@ -370,8 +375,9 @@ void extend(const float* child, std::ptrdiff_t child_ld, const Run* begin, const
 
 }  // namespace
 
-BlockCholesky::BlockCholesky(const BlockMatrix& pattern) {
+BlockCholesky::BlockCholesky(const BlockMatrix& pattern, FactorStorage storage) {
   auto plan = std::make_shared<Plan>();
+  plan->storage = storage;
   plan->n = pattern.columns();
   const std::vector<phiz::Node> found = find_nodes(pattern);
   for (const phiz::Node& node : found) {
@@ -482,6 +488,7 @@ int BlockCholesky::factorise(const BlockMatrix& A, bool parallel) {
     if (!wide || node.work() < wide_front) {
       factor_below(front, negative > 0, F, ld, 0, below / front_group);
       update_front(front, negative > 0, U, 0, front.r);
+      round_front(front);
       return negative;
     }
     parallel_chunks(below / front_group, 3, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -492,6 +499,7 @@ int BlockCholesky::factorise(const BlockMatrix& A, bool parallel) {
       const FlushTinyNumbers flush_here;
       update_front(front, negative > 0, U, begin, end);
     });
+    round_front(front);
     return negative;
   };
   std::array<int, bins + 1> negative_in{};

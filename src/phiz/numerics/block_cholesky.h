@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Multifrontal Cholesky factorisation of symmetric matrices of 3x3 blocks, one per pair of neighbouring vertices, in
 /// single precision. For iterations that correct its error: a solve is right to about a millionth, times the condition
-/// of the matrix at worst.
+/// of the matrix at worst; to about a hundredth where it reads a rounded factor.
 #pragma once
 
 #include <memory>
@@ -52,10 +52,14 @@ struct SolvedRows {
   void add(const Eigen::Matrix<float, most, 1>& w, float* v) const;
 };
 
+/// What forward() and backward() read: the factor, or a copy of it that is rounded to 16 bits (8 of them of the
+/// mantissa), which takes half of the memory traffic that bounds their speed.
+enum class FactorStorage { single, rounded };
+
 class BlockCholesky {
  public:
   /// Analyses the pattern of a matrix whose columns are in an elimination_order() already.
-  explicit BlockCholesky(const BlockMatrix& pattern);
+  explicit BlockCholesky(const BlockMatrix& pattern, FactorStorage storage = FactorStorage::single);
   ~BlockCholesky();
   BlockCholesky(BlockCholesky&&) noexcept;
   BlockCholesky& operator=(BlockCholesky&&) noexcept;
@@ -75,7 +79,7 @@ class BlockCholesky {
   void backward(float* x, int sides = 1) const;
   void solve(float* x, int sides = 1) const;
 
-  /// Rows past the last given one are zero. May be called from several threads at once.
+  /// With the factor itself. Rows past the last given one are zero. May be called from several threads at once.
   SolvedRows forward_rows(const std::vector<SparseRow>& rows) const;
 
   int columns() const;
@@ -86,7 +90,7 @@ class BlockCholesky {
  private:
   struct Plan;
   struct Values;
-  BlockCholesky(std::shared_ptr<const Plan> plan);
+  explicit BlockCholesky(std::shared_ptr<const Plan> plan);
   std::shared_ptr<const Plan> plan_;
   std::unique_ptr<Values> values_;
 };

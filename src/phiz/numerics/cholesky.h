@@ -12,7 +12,7 @@ namespace phiz {
 /// workers spin, and one thread keeps results the same on every machine.
 class SparseCholesky {
  public:
-  /// Analyses and factorises A; only the triangle on and below the diagonal is read. Throws phiz::Error(failure) when A
+  /// Analyses and factorises A, stored whole: of the two triangles one is read. Throws phiz::Error(failure) when A
   /// is not square, not finite or not positive definite, naming the row where the factorisation broke down.
   explicit SparseCholesky(const SparseMatrixd& A);
   ~SparseCholesky();

@@ -230,9 +230,33 @@ void UpdateFront(const Front& f, bool has_negative, float* U, std::ptrdiff_t beg
     UpdateColumns<false>(f, U, begin, end);
 }
 
-/// z <- z +- (G groups of A) y; `stride` floats from group to group of A.
-template <int G, int S, bool subtract>
-HWY_INLINE void MultiplyGroups(const float* A, std::ptrdiff_t stride, std::ptrdiff_t k, const float* y,
+HWY_INLINE V Entries(const float* at) {
+  return hn::LoadU(D(), at);
+}
+/// Of a rounded factor: the upper halves of floats.
+HWY_INLINE V Entries(const std::uint16_t* at) {
+  const hn::Rebind<std::uint32_t, D> words;
+  const hn::Rebind<std::uint16_t, D> halves;
+  return hn::BitCast(D(), hn::ShiftLeft<16>(hn::PromoteTo(words, hn::LoadU(halves, at))));
+}
+
+/// The upper halves of floats, to the nearest; `count`: a multiple of 16.
+void RoundEntries(const float* from, std::uint16_t* to, std::ptrdiff_t count) {
+  const hn::Rebind<std::int32_t, D> words;
+  const hn::Rebind<std::uint16_t, D> halves;
+  const auto half_way = hn::Set(words, 0x7fff), one = hn::Set(words, 1);
+  for (std::ptrdiff_t i = 0; i < count; i += lanes) {
+    const auto bits = hn::BitCast(hn::Rebind<std::uint32_t, D>(), hn::LoadU(D(), from + i));
+    const auto upper = hn::BitCast(words, hn::ShiftRight<16>(bits));
+    const auto rounded = hn::Add(hn::BitCast(words, bits), hn::Add(half_way, hn::And(upper, one)));
+    const auto out = hn::ShiftRight<16>(hn::BitCast(hn::Rebind<std::uint32_t, D>(), rounded));
+    hn::StoreU(hn::DemoteTo(halves, hn::BitCast(words, out)), halves, to + i);
+  }
+}
+
+/// z <- z +- (G groups of A) y; `stride` entries from group to group of A.
+template <int G, int S, bool subtract, class Entry>
+HWY_INLINE void MultiplyGroups(const Entry* A, std::ptrdiff_t stride, std::ptrdiff_t k, const float* y,
                                std::ptrdiff_t y_apart, float* z, std::ptrdiff_t z_apart) {
   V sum[G * vectors][S];
   for (int s = 0; s < S; ++s)
@@ -243,7 +267,7 @@ HWY_INLINE void MultiplyGroups(const float* A, std::ptrdiff_t stride, std::ptrdi
     for (int s = 0; s < S; ++s) b[s] = hn::Set(D(), y[s * y_apart + i]);
     for (int g = 0; g < G; ++g)
       for (int v = 0; v < vectors; ++v) {
-        const V a = hn::LoadU(D(), A + g * stride + i * group + v * lanes);
+        const V a = Entries(A + g * stride + i * group + v * lanes);
         for (int s = 0; s < S; ++s) {
           V& x = sum[g * vectors + v][s];
           x = subtract ? hn::NegMulAdd(a, b[s], x) : hn::MulAdd(a, b[s], x);
@@ -254,11 +278,11 @@ HWY_INLINE void MultiplyGroups(const float* A, std::ptrdiff_t stride, std::ptrdi
     for (int v = 0; v < G * vectors; ++v) hn::StoreU(sum[v][s], D(), z + s * z_apart + v * lanes);
 }
 
-template <int S>
-void Forward(const Front& f, float* y, float* z) {
+template <int S, class Entry>
+void Forward(const Front& f, const Entry* L1, const Entry* L2, float* y, float* z) {
   const std::ptrdiff_t stride = f.p * group, own = whole_groups(f.p), below = whole_groups(f.r);
   for (std::ptrdiff_t g = 0; g * group < f.p; ++g) {
-    const float* A = f.L1 + g * stride;
+    const Entry* A = L1 + g * stride;
     const std::ptrdiff_t first = g * group;
     MultiplyGroups<1, S, true>(A, stride, first, y, own, y + first, own);
     for (std::ptrdiff_t k = first; k < std::min(f.p, first + group); ++k)
@@ -268,56 +292,67 @@ void Forward(const Front& f, float* y, float* z) {
         x[k] = solved;
         const V b = hn::Set(D(), solved);
         for (int v = 0; v < vectors; ++v)
-          hn::StoreU(hn::NegMulAdd(hn::LoadU(D(), A + k * group + v * lanes), b, hn::LoadU(D(), x + first + v * lanes)),
-                     D(), x + first + v * lanes);
+          hn::StoreU(hn::NegMulAdd(Entries(A + k * group + v * lanes), b, hn::LoadU(D(), x + first + v * lanes)), D(),
+                     x + first + v * lanes);
       }
   }
   constexpr int G = S == 1 && vectors == 1 ? 4 : S <= 2 ? 2 : 1;
   const std::ptrdiff_t groups = below / group;
   std::ptrdiff_t g = 0;
   for (; g + G <= groups; g += G)
-    MultiplyGroups<G, S, false>(f.L2 + g * stride, stride, f.p, y, own, z + g * group, below);
-  for (; g < groups; ++g) MultiplyGroups<1, S, false>(f.L2 + g * stride, stride, f.p, y, own, z + g * group, below);
+    MultiplyGroups<G, S, false>(L2 + g * stride, stride, f.p, y, own, z + g * group, below);
+  for (; g < groups; ++g) MultiplyGroups<1, S, false>(L2 + g * stride, stride, f.p, y, own, z + g * group, below);
 }
 
-/// y_k <- y_k - sum over the groups of column k . z for the columns [k, k + W).
-template <int W, int S>
-HWY_INLINE void SubtractProducts(const float* A, std::ptrdiff_t stride, std::ptrdiff_t groups, std::ptrdiff_t k,
-                                 const float* z, std::ptrdiff_t z_apart, float* y, std::ptrdiff_t y_apart) {
-  V sum[W][S];
-  for (int c = 0; c < W; ++c)
-    for (int s = 0; s < S; ++s) sum[c][s] = hn::Zero(D());
-  for (std::ptrdiff_t g = 0; g < groups; ++g)
-    for (int v = 0; v < vectors; ++v) {
-      V b[S];
-      for (int s = 0; s < S; ++s) b[s] = hn::LoadU(D(), z + s * z_apart + g * group + v * lanes);
-      for (int c = 0; c < W; ++c) {
-        const V a = hn::LoadU(D(), A + g * stride + (k + c) * group + v * lanes);
-        for (int s = 0; s < S; ++s) sum[c][s] = hn::MulAdd(a, b[s], sum[c][s]);
+/// sum_k <- (sum_k or 0) + the products of column k of B groups with z, lane by lane, for `count` columns.
+template <int B, int S, class Entry>
+HWY_INLINE void AddProducts(const Entry* A, std::ptrdiff_t stride, std::ptrdiff_t count, bool clear, const float* z,
+                            std::ptrdiff_t z_apart, float* sums) {
+  V b[B * vectors][S];
+  for (int v = 0; v < B * vectors; ++v)
+    for (int s = 0; s < S; ++s) b[v][s] = hn::LoadU(D(), z + s * z_apart + v * lanes);
+  for (std::ptrdiff_t k = 0; k < count; ++k, sums += S * lanes) {
+    V sum[S];
+    for (int s = 0; s < S; ++s) sum[s] = clear ? hn::Zero(D()) : hn::Load(D(), sums + s * lanes);
+    for (int g = 0; g < B; ++g)
+      for (int v = 0; v < vectors; ++v) {
+        const V a = Entries(A + g * stride + k * group + v * lanes);
+        for (int s = 0; s < S; ++s) sum[s] = hn::MulAdd(a, b[g * vectors + v][s], sum[s]);
       }
-    }
-  for (int c = 0; c < W; ++c)
-    for (int s = 0; s < S; ++s) y[s * y_apart + k + c] -= hn::GetLane(hn::SumOfLanes(D(), sum[c][s]));
+    for (int s = 0; s < S; ++s) hn::Store(sum[s], D(), sums + s * lanes);
+  }
 }
 
-template <int S>
-HWY_INLINE void SubtractAllProducts(const float* A, std::ptrdiff_t stride, std::ptrdiff_t groups, std::ptrdiff_t begin,
+/// y_k <- y_k - sum over the groups of column k . z for the columns [begin, end). Reads A a few groups at a time, along
+/// their columns.
+template <int S, class Entry>
+HWY_INLINE void SubtractAllProducts(const Entry* A, std::ptrdiff_t stride, std::ptrdiff_t groups, std::ptrdiff_t begin,
                                     std::ptrdiff_t end, const float* z, std::ptrdiff_t z_apart, float* y,
                                     std::ptrdiff_t y_apart) {
   if (groups == 0) return;
-  constexpr int W = S == 1 ? 8 : 4;
-  std::ptrdiff_t k = begin;
-  for (; k + W <= end; k += W) SubtractProducts<W, S>(A, stride, groups, k, z, z_apart, y, y_apart);
-  for (; k < end; ++k) SubtractProducts<1, S>(A, stride, groups, k, z, z_apart, y, y_apart);
+  constexpr int B = S > 2 ? 1 : S == 2 ? 2 : 4;
+  constexpr std::ptrdiff_t panel = 128;
+  HWY_ALIGN float sums[panel * S * lanes];
+  for (std::ptrdiff_t k = begin; k < end; k += panel) {
+    const std::ptrdiff_t count = std::min(panel, end - k);
+    const Entry* from = A + k * group;
+    std::ptrdiff_t g = 0;
+    for (; g + B <= groups; g += B)
+      AddProducts<B, S>(from + g * stride, stride, count, g == 0, z + g * group, z_apart, sums);
+    for (; g < groups; ++g) AddProducts<1, S>(from + g * stride, stride, count, g == 0, z + g * group, z_apart, sums);
+    for (std::ptrdiff_t c = 0; c < count; ++c)
+      for (int s = 0; s < S; ++s)
+        y[s * y_apart + k + c] -= hn::GetLane(hn::SumOfLanes(D(), hn::Load(D(), sums + (c * S + s) * lanes)));
+  }
 }
 
-template <int S>
-void Backward(const Front& f, float* y, const float* z) {
+template <int S, class Entry>
+void Backward(const Front& f, const Entry* L1, const Entry* L2, float* y, const float* z) {
   const std::ptrdiff_t stride = f.p * group, own = whole_groups(f.p), below = whole_groups(f.r);
-  SubtractAllProducts<S>(f.L2, stride, below / group, 0, f.p, z, below, y, own);
+  SubtractAllProducts<S>(L2, stride, below / group, 0, f.p, z, below, y, own);
   for (std::ptrdiff_t g = own / group - 1; g >= 0; --g) {
     const std::ptrdiff_t first = g * group, last = std::min(f.p, first + group);
-    const float* A = f.L1 + g * stride;
+    const Entry* A = L1 + g * stride;
     // The groups further down, then the triangle.
     SubtractAllProducts<S>(A + stride, stride, own / group - 1 - g, first, last, y + first + group, own, y, own);
     for (int s = 0; s < S; ++s) {
@@ -325,29 +360,51 @@ void Backward(const Front& f, float* y, const float* z) {
       for (std::ptrdiff_t k = last - 1; k >= first; --k) {
         V sum = hn::Zero(D());
         for (int v = 0; v < vectors; ++v)
-          sum = hn::MulAdd(hn::LoadU(D(), A + k * group + v * lanes), hn::LoadU(D(), x + first + v * lanes), sum);
+          sum = hn::MulAdd(Entries(A + k * group + v * lanes), hn::LoadU(D(), x + first + v * lanes), sum);
         x[k] = (x[k] - hn::GetLane(hn::SumOfLanes(D(), sum))) * f.inverse_diagonal[k];
       }
     }
   }
 }
 
-void ForwardFront(const Front& f, int sides, float* y, float* z) {
+template <class Entry>
+HWY_INLINE void ForwardSides(const Front& f, const Entry* L1, const Entry* L2, int sides, float* y, float* z) {
   if (sides == 1)
-    Forward<1>(f, y, z);
+    Forward<1>(f, L1, L2, y, z);
   else if (sides == 2)
-    Forward<2>(f, y, z);
+    Forward<2>(f, L1, L2, y, z);
   else
-    Forward<4>(f, y, z);
+    Forward<4>(f, L1, L2, y, z);
+}
+
+void ForwardFront(const Front& f, int sides, float* y, float* z) {
+  if (f.rounded1 != nullptr)
+    ForwardSides(f, f.rounded1, f.rounded2, sides, y, z);
+  else
+    ForwardSides(f, f.L1, f.L2, sides, y, z);
+}
+
+template <class Entry>
+HWY_INLINE void BackwardSides(const Front& f, const Entry* L1, const Entry* L2, int sides, float* y, const float* z) {
+  if (sides == 1)
+    Backward<1>(f, L1, L2, y, z);
+  else if (sides == 2)
+    Backward<2>(f, L1, L2, y, z);
+  else
+    Backward<4>(f, L1, L2, y, z);
 }
 
 void BackwardFront(const Front& f, int sides, float* y, const float* z) {
-  if (sides == 1)
-    Backward<1>(f, y, z);
-  else if (sides == 2)
-    Backward<2>(f, y, z);
+  if (f.rounded1 != nullptr)
+    BackwardSides(f, f.rounded1, f.rounded2, sides, y, z);
   else
-    Backward<4>(f, y, z);
+    BackwardSides(f, f.L1, f.L2, sides, y, z);
+}
+
+void RoundFront(const Front& f) {
+  if (f.rounded1 == nullptr) return;
+  RoundEntries(f.L1, f.rounded1, whole_groups(f.p) * f.p);
+  RoundEntries(f.L2, f.rounded2, whole_groups(f.r) * f.p);
 }
 
 void FinishSparseRows(const Front& f, float* X) {
@@ -399,6 +456,7 @@ namespace phiz {
 HWY_EXPORT(FactorOwn);
 HWY_EXPORT(FactorBelow);
 HWY_EXPORT(UpdateFront);
+HWY_EXPORT(RoundFront);
 HWY_EXPORT(ForwardFront);
 HWY_EXPORT(BackwardFront);
 HWY_EXPORT(FinishSparseRows);
@@ -416,6 +474,9 @@ void factor_below(const Front& front, bool has_negative, const float* F, std::pt
 }
 void update_front(const Front& front, bool has_negative, float* U, std::ptrdiff_t begin, std::ptrdiff_t end) {
   HWY_DYNAMIC_DISPATCH(UpdateFront)(front, has_negative, U, begin, end);
+}
+void round_front(const Front& front) {
+  HWY_DYNAMIC_DISPATCH(RoundFront)(front);
 }
 void forward_front(const Front& front, int sides, float* y, float* z) {
   HWY_DYNAMIC_DISPATCH(ForwardFront)(front, sides, y, z);

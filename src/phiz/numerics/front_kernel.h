@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace phiz {
 
@@ -25,6 +26,8 @@ struct Front {
   float* inverse_diagonal = nullptr;  ///< p
   float* sign = nullptr;              ///< p: of the pivots, 1 or -1
   const float* diagonal = nullptr;    ///< p: size of that of the matrix, positive
+  std::uint16_t* rounded1 = nullptr;  ///< L1 and L2 as the upper halves of their floats, for solves; or null
+  std::uint16_t* rounded2 = nullptr;
 };
 
 /// Factorises the own rows of F (whole_groups(p) + whole_groups(r) rows, p columns; rows below start at a group) as L S
@@ -36,6 +39,9 @@ void factor_below(const Front& front, bool has_negative, const float* F, std::pt
                   std::ptrdiff_t end);
 /// U <- U - L2 S L2^T for the columns [begin, end), `begin` a multiple of 16; U: whole_groups(r) x r, lower triangle.
 void update_front(const Front& front, bool has_negative, float* U, std::ptrdiff_t begin, std::ptrdiff_t end);
+
+/// Makes rounded1 and rounded2 where they are wanted.
+void round_front(const Front& front);
 
 /// Most right-hand sides of one call.
 constexpr int most_sides = 4;

@@ -20,6 +20,7 @@
 #include "phiz/anatomy/contact_regions.h"
 #include "phiz/anatomy/fibres.h"
 #include "phiz/anatomy/lashes.h"
+#include "phiz/anatomy/lid_muscles.h"
 #include "phiz/core/error.h"
 #include "phiz/geometry/tetrahedralise.h"
 
@@ -170,6 +171,7 @@ HeadTemplate build_builtin_head(const BuiltinOptions& options) {
     report("expressions");
     head.expressions = make_expressions(head, proportions, bundles);
   }
+  extend_muscles_to_lids(head);
   validate(head, head.name);
   return head;
 }

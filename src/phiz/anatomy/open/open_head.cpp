@@ -12,6 +12,7 @@
 #include "phiz/anatomy/builtin/muscles.h"
 #include "phiz/anatomy/contact_regions.h"
 #include "phiz/anatomy/fibres.h"
+#include "phiz/anatomy/lid_muscles.h"
 #include "phiz/anatomy/open/face_guide.h"
 #include "phiz/anatomy/open/face_kit_layout.h"
 #include "phiz/anatomy/open/face_kit_skin.h"
@@ -236,6 +237,7 @@ HeadTemplate build_open_head(const FaceKit& kit, const BodyParts& parts, const O
   for (MuscleShape& shape : shapes) translate(shape, to_condyles);
   add_drawn_muscles(shapes, head, proportions, mandible.V.rowwise() + to_condyles.transpose());
   head.muscles = make_muscles(head.volume, shapes, {.widest_gap = 0.008});
+  extend_muscles_to_lids(head);
   head.attachments = find_attachments(head);
   validate(head, head.name);
   return head;
