@@ -51,6 +51,32 @@ const HeadTemplate& head() {
   return test::preview_head();
 }
 
+TEST(MusclesInAHead, ReachTheMarginsOfTheLids) {
+  VectorXd filled = VectorXd::Zero(head().volume.T.rows());
+  for (const Muscle& m : head().muscles) {
+    EXPECT_TRUE(std::is_sorted(m.tets.begin(), m.tets.end())) << m.name;
+    EXPECT_EQ(std::adjacent_find(m.tets.begin(), m.tets.end()), m.tets.end()) << m.name;
+    for (Eigen::Index i = 0; i < m.tets.size(); ++i) filled[m.tets[i]] += m.fraction[i];
+  }
+  EXPECT_LE(filled.maxCoeff(), 1 + 1e-9);
+  for (const char* name : {"leftUpperLid", "leftLowerLid", "rightUpperLid", "rightLowerLid"}) {
+    const auto lid = std::find_if(head().contact_regions.begin(), head().contact_regions.end(),
+                                  [&](const ContactRegion& region) { return region.name == name; });
+    ASSERT_NE(lid, head().contact_regions.end());
+    const std::set<int> vertices(lid->vertices.begin(), lid->vertices.end());
+    int tets = 0;
+    for (Eigen::Index t = 0; t < filled.size(); ++t) {
+      const auto corners = head().volume.T.row(t);
+      if (head().volume.region[t] != Tissue::flesh ||
+          std::none_of(corners.begin(), corners.end(), [&](int v) { return vertices.contains(v); }))
+        continue;
+      EXPECT_GE(filled[t], 0.6 - 1e-9) << name;
+      ++tets;
+    }
+    EXPECT_GT(tets, 20) << name;
+  }
+}
+
 TEST(MusclesInAHead, FillAShareOfTheFleshWithUnitFibres) {
   const VectorXd volume = tet_volumes(head().volume.V, head().volume.T);
   VectorXd filled = VectorXd::Zero(volume.size());
