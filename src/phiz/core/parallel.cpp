@@ -3,11 +3,8 @@
 
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <memory>
-#include <utility>
 #include <vector>
 
 namespace phiz {
@@ -35,14 +32,6 @@ double parallel_sum(std::ptrdiff_t count, std::ptrdiff_t grain,
   double sum = 0;
   for (const double p : partial) sum += p;
   return sum;
-}
-
-std::future<bool> in_background(std::function<bool()> work) {
-  static tbb::task_arena arena(1, 0, tbb::task_arena::priority::low);
-  const auto task = std::make_shared<std::packaged_task<bool()>>(std::move(work));
-  std::future<bool> result = task->get_future();
-  arena.enqueue([task] { (*task)(); });
-  return result;
 }
 
 ThreadLimit::ThreadLimit(int count) : control_(nullptr) {

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <future>
 
 namespace phiz {
 
@@ -26,10 +25,6 @@ void parallel_for(std::ptrdiff_t count, Body&& body, std::ptrdiff_t grain = 256)
 /// count.
 double parallel_sum(std::ptrdiff_t count, std::ptrdiff_t grain,
                     const std::function<double(std::ptrdiff_t begin, std::ptrdiff_t end)>& chunk);
-
-/// Runs work on a thread of the parallel loops, which does not take part in them until it is done, so that there are
-/// never more threads at work than cores.
-std::future<bool> in_background(std::function<bool()> work);
 
 /// Limits parallel loops to `count` threads while the object lives; 0 means all cores.
 class ThreadLimit {

@@ -164,7 +164,7 @@ SolveStatistics TissueEngine::solve(const MatrixX3d& pins, ContactScene* scene) 
   if (!std::all_of(x.get(), x.get() + 4 * system.rows, [](double value) { return std::isfinite(value); })) {
     std::copy(backup.begin(), backup.end(), x.get());
     statistics.converged = false;
-    has_factor = false;
+    has_factor = forces_at_x = false;
   }
   settled = statistics.converged;
   remember_targets();

@@ -3,11 +3,11 @@
 /// header.
 #pragma once
 
-#include <future>
 #include <map>
 #include <optional>
 #include <vector>
 
+#include "phiz/core/background.h"
 #include "phiz/elasticity/contact_compliance.h"
 #include "phiz/elasticity/low_rank_inverse.h"
 #include "phiz/elasticity/tissue_solver.h"
@@ -36,9 +36,6 @@ inline Eigen::Map<const Eigen::Vector3f> vector_at(const float* v, int row) {
 class TissueEngine {
  public:
   TissueEngine(const TissueBody& body, const TissueSolverOptions& given);
-  ~TissueEngine() {
-    if (job.valid()) job.wait();
-  }
   TissueEngine(const TissueEngine&) = delete;
   TissueEngine& operator=(const TissueEngine&) = delete;
 
@@ -75,9 +72,9 @@ class TissueEngine {
   std::vector<double> restricted;         ///< room for a gradient
   std::vector<float> weight2;             ///< per free row: square of 1 for watched vertices, less for others
   TissueSolverCounts counts;
-  std::future<bool> job;
   std::optional<bool> job_result;
   int job_due = -1;
+  Background job;  ///< uses what is above
 
  private:
   std::ptrdiff_t size() const { return 3 * system.free; }

@@ -2,7 +2,6 @@
 #include <utility>
 
 #include "phiz/core/error.h"
-#include "phiz/core/parallel.h"
 #include "phiz/elasticity/tissue_engine.h"
 
 namespace phiz {
@@ -45,14 +44,14 @@ void TissueEngine::start_job() {
   ++counts.factorisations;
   factor_inverse_time_step2 = system.inverse_time_step2;
   if (options.background)
-    job = in_background(std::move(work));
+    job.start(std::move(work));
   else
     job_result = work();
 }
 
 void TissueEngine::take_job() {
   if (job_due < 0 || counts.solves < job_due) return;
-  const bool good = job.valid() ? job.get() : *job_result;
+  const bool good = job.is_started() ? job.get() : *job_result;
   job_result.reset();
   job_due = -1;
   if (!good) {
@@ -66,7 +65,7 @@ void TissueEngine::take_job() {
 }
 
 void TissueEngine::drop_job() {
-  if (job.valid()) job.get();
+  job.drop();
   job_result.reset();
   job_due = -1;
 }

@@ -145,8 +145,8 @@ struct MuscleSimulation::Parts {
     return statistics;
   }
 
-  /// Another try, which does not depend on where the face was before. The state of the `first` one stays if this is no
-  /// better.
+  /// Another try, which does not depend on where the face was before. The state of the `first` one stays unless this
+  /// converges.
   SolveStatistics solve_from_rest(const MatrixX3d& pins, const SolveStatistics& first) {
     const MatrixX3d before = solver.positions();
     solver.restart(tissue.body.rest);
