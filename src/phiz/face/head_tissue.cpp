@@ -49,10 +49,10 @@ void drop_far_slides(const HeadTemplate& head, double reach, std::vector<Slide>&
   });
 }
 
-/// Where bone is meshed far finer than flesh has to be, flesh and slides that are nearer than this to pinned bone are
-/// held by it: between them are only tets of some tenths of a millimetre, which snap from fold to fold, metres.
-constexpr double crowded = 1e-3;
+constexpr double crowded = 1e-3;  ///< metres
 
+/// Where bone is meshed far finer than flesh has to be, flesh and slides that are crowded by pinned bone are held by
+/// it: between them are only tets of some tenths of a millimetre, which snap from fold to fold.
 void hold_crowded(HeadTissue& tissue) {
   TissueBody& body = tissue.body;
   const MatrixX3d& V = body.rest;

@@ -32,11 +32,10 @@ struct HeadTissue {
   std::vector<char> on_mandible;  ///< per vertex, where it is pinned: 1 if it goes with the mandible, 0: with the skull
 };
 
-/// Bone vertices are pinned, but those of head.attachments that slide; so is flesh within
-/// 1 mm of them. Flat tets are as soft as flesh_body() has them.
-/// A tet with a share f of muscle that is k times stiffer has the energy (1 - f) E_pass + f k E_act; the body says so
-/// as moduli times 1 - f + f k, of which the share f k / (1 - f + f k) is active. Throws phiz::Error(bad_input) for
-/// options or heads that make no body.
+/// Bone vertices are pinned, but those of head.attachments that slide; so is flesh within 1 mm of pinned ones. Flat
+/// tets are as soft as flesh_body() has them. A tet with a share f of muscle that is k times stiffer has the energy (1
+/// - f) E_pass + f k E_act; the body says so as moduli times 1 - f + f k, of which the share f k / (1 - f + f k) is
+/// active. Throws phiz::Error(bad_input) for options or heads that make no body.
 HeadTissue head_tissue(const HeadTemplate& head, const TissueOptions& options = {});
 
 /// Moves the pinned rows of x (n x 3) to their places for a pose of the jaw.
