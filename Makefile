@@ -35,9 +35,10 @@ bench: build ## Measure and print JSON
 format: ## Format all sources
 	clang-format -i $(SOURCES)
 
-lint: build ## Check the format and run clang-tidy
+lint: setup ## Check the format and run clang-tidy
 	clang-format --dry-run --Werror $(SOURCES)
-	scripts/tidy build/release -j$(JOBS)
+	cmake --preset release -B build/lint -DPHIZ_UNITY=OFF -Wno-dev
+	scripts/tidy build/lint -j$(JOBS)
 
 setup: ## Install what is missing
 	@scripts/setup

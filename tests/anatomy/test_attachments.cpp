@@ -13,24 +13,22 @@
 namespace phiz {
 namespace {
 
-const HeadTemplate& head() {
-  return test::preview_head();
-}
+using test::preview_head;
 
 Vector3d place(Eigen::Index i) {
-  return head().volume.V.row(head().attachments.vertices[i]);
+  return preview_head().volume.V.row(preview_head().attachments.vertices[i]);
 }
 
 bool pinned(Eigen::Index i) {
-  return head().attachments.hold[i] == static_cast<int>(Hold::pin);
+  return preview_head().attachments.hold[i] == static_cast<int>(Hold::pin);
 }
 
 TEST(AttachmentsOfAHead, LieOnBonesThatTouchFleshAndNotOnTheSkin) {
-  const Attachments& a = head().attachments;
+  const Attachments& a = preview_head().attachments;
   ASSERT_GT(a.vertices.size(), 300);
-  const std::set<int> skin(head().skin_vertices.begin(), head().skin_vertices.end());
+  const std::set<int> skin(preview_head().skin_vertices.begin(), preview_head().skin_vertices.end());
   for (const int v : a.vertices) {
-    EXPECT_NE(head().carrier[v], static_cast<int>(Carrier::flesh));
+    EXPECT_NE(preview_head().carrier[v], static_cast<int>(Carrier::flesh));
     EXPECT_FALSE(skin.contains(v));
   }
 }
@@ -38,18 +36,19 @@ TEST(AttachmentsOfAHead, LieOnBonesThatTouchFleshAndNotOnTheSkin) {
 TEST(AttachmentsOfAHead, PointOutOfTheBone) {
   // On the vault and the forehead out of the bone is away from the middle of the head.
   const Vector3d middle(0, 0.06, -0.02);
-  for (Eigen::Index i = 0; i < head().attachments.vertices.size(); ++i)
+  for (Eigen::Index i = 0; i < preview_head().attachments.vertices.size(); ++i)
     if (place(i).y() > 0.06) {
-      EXPECT_GT(Vector3d(head().attachments.normals.row(i)).dot(place(i) - middle), 0);
+      EXPECT_GT(Vector3d(preview_head().attachments.normals.row(i)).dot(place(i) - middle), 0);
     }
 }
 
 TEST(AttachmentsOfAHead, SlideOnTheForeheadAndHoldTheChinAndTheTeeth) {
-  const FaceFrame frame = face_frame(head());
+  const FaceFrame frame = face_frame(preview_head());
   int forehead = 0, chin = 0;
-  for (Eigen::Index i = 0; i < head().attachments.vertices.size(); ++i) {
+  for (Eigen::Index i = 0; i < preview_head().attachments.vertices.size(); ++i) {
     const Vector3d p = place(i);
-    const bool mandible = head().carrier[head().attachments.vertices[i]] == static_cast<int>(Carrier::mandible);
+    const bool mandible =
+        preview_head().carrier[preview_head().attachments.vertices[i]] == static_cast<int>(Carrier::mandible);
     if (p.y() > frame.brow + 0.01) {
       ++forehead;
       EXPECT_FALSE(pinned(i)) << p.transpose();
@@ -65,11 +64,11 @@ TEST(AttachmentsOfAHead, SlideOnTheForeheadAndHoldTheChinAndTheTeeth) {
 
 TEST(AttachmentsOfAHead, HoldWhereMusclesArise) {
   int near = 0;
-  for (const Muscle& m : head().muscles) {
+  for (const Muscle& m : preview_head().muscles) {
     const MuscleFacts* facts = find_muscle_facts(m.name);
     if (m.ring || !facts->origin_on_bone || !facts->expression) continue;
     for (const MatrixX3d& fibre : m.fibres)
-      for (Eigen::Index i = 0; i < head().attachments.vertices.size(); ++i)
+      for (Eigen::Index i = 0; i < preview_head().attachments.vertices.size(); ++i)
         if ((place(i) - fibre.row(0).transpose()).norm() < 0.003) {
           ++near;
           EXPECT_TRUE(pinned(i)) << m.name;
@@ -80,13 +79,13 @@ TEST(AttachmentsOfAHead, HoldWhereMusclesArise) {
 
 TEST(AttachmentsOfAHead, TheRulesOfTheTableFindTheirPlaces) {
   std::map<std::string, int> count;
-  find_attachments(head(), &count);
+  find_attachments(preview_head(), &count);
   for (const char* rule :
        {"muscle origin", "nose", "alveolar", "chin", "deep", "scalp", "temple", "cheekbone", "jaw", "elsewhere"})
     EXPECT_GT(count[rule], 0) << rule;
   int all = 0;
   for (const auto& [rule, n] : count) all += n;
-  EXPECT_EQ(all, head().attachments.vertices.size());
+  EXPECT_EQ(all, preview_head().attachments.vertices.size());
 }
 
 TEST(AttachmentsOfAHead, NeedLandmarks) {

@@ -12,9 +12,7 @@
 namespace phiz {
 namespace {
 
-const HeadTemplate& head() {
-  return test::preview_head();
-}
+using test::preview_head;
 
 const Gate& gate(const HeadReport& report, const std::string& name) {
   const auto found =
@@ -25,7 +23,7 @@ const Gate& gate(const HeadReport& report, const std::string& name) {
 
 TEST(CheckHead, TheBuiltInHeadPassesWhatDoesNotDependOnExpressions) {
   std::vector<std::string> steps;
-  const HeadReport report = check_head(head(), [&steps](const std::string& step) { steps.push_back(step); });
+  const HeadReport report = check_head(preview_head(), [&steps](const std::string& step) { steps.push_back(step); });
   EXPECT_EQ(report.gates.size(), 15U);
   EXPECT_FALSE(steps.empty());
   for (const Gate& g : report.gates) {
@@ -34,48 +32,48 @@ TEST(CheckHead, TheBuiltInHeadPassesWhatDoesNotDependOnExpressions) {
   }
   EXPECT_FALSE(report.passes());  // it was built without expressions
   EXPECT_EQ(gate(report, "expressions").note.find("missing: eyeBlinkLeft"), 0U);
-  EXPECT_EQ(report.muscles.size(), head().muscles.size());
+  EXPECT_EQ(report.muscles.size(), preview_head().muscles.size());
   EXPECT_GT(report.active_share_of_face, 0.15);
   EXPECT_LT(report.active_share_of_face, 0.35);
 }
 
 TEST(CheckHead, ABoneThatSticksOutIsMeasured) {
-  HeadTemplate broken = head();
+  HeadTemplate broken = preview_head();
   const double before = drawn_bone_depth(broken);
   EXPECT_GT(before, 0.001);
   for (Part& part : broken.parts)
     if (part.name == "mandible") part.mesh.V.col(2).array() += 0.02;
   EXPECT_LT(drawn_bone_depth(broken), 0);
-  broken = head();
+  broken = preview_head();
   const Attachments& held = broken.attachments;
   broken.volume.V.row(held.vertices[0]) += 0.05 * held.normals.row(0);
   EXPECT_LT(simulated_bone_depth(broken), 0);
 }
 
 TEST(CheckHead, TurnedFibresAreMeasured) {
-  for (const Muscle& m : head().muscles) {
-    EXPECT_LT(muscle_figures(head(), m).angle, 25) << m.name;
+  for (const Muscle& m : preview_head().muscles) {
+    EXPECT_LT(muscle_figures(preview_head(), m).angle, 25) << m.name;
     if (m.name != "zygomaticusMajorLeft" && m.name != "orbicularisOris") continue;
     Muscle turned = m;
     for (Eigen::Index i = 0; i < turned.direction.rows(); ++i)
       turned.direction.row(i) = Vector3d(turned.direction.row(i)).unitOrthogonal().transpose();
-    EXPECT_GT(muscle_figures(head(), turned).angle, 45) << m.name;
+    EXPECT_GT(muscle_figures(preview_head(), turned).angle, 45) << m.name;
   }
 }
 
 TEST(CheckHead, AMuscleOutsideTheFleshIsMeasured) {
-  Muscle moved = head().muscles[0];
+  Muscle moved = preview_head().muscles[0];
   moved.surface.V.col(2).array() += 0.02;
-  EXPECT_LT(muscle_figures(head(), moved).share_in_flesh, 0.5);
+  EXPECT_LT(muscle_figures(preview_head(), moved).share_in_flesh, 0.5);
 }
 
 TEST(CheckHead, TheBiteIsMeasured) {
-  const Occlusion bite = occlusion(head());
+  const Occlusion bite = occlusion(preview_head());
   ASSERT_TRUE(bite.known);
   EXPECT_NEAR(bite.overbite, 0.0018, 0.0005);
   EXPECT_NEAR(bite.overjet, 0.0023, 0.0008);
   EXPECT_EQ(bite.interpenetration, 0);
-  HeadTemplate shut = head();
+  HeadTemplate shut = preview_head();
   for (Part& part : shut.parts)
     if (part.name == "lowerTeeth") part.mesh.V.col(1).array() += 0.004;
   EXPECT_NEAR(occlusion(shut).overbite - bite.overbite, 0.004, 1e-6);
@@ -85,7 +83,7 @@ TEST(CheckHead, TheBiteIsMeasured) {
 }
 
 TEST(CheckHead, FleshIsMeasuredOverTheLandmarksOfTheTable) {
-  const std::vector<MeasuredThickness> all = measured_thickness(head());
+  const std::vector<MeasuredThickness> all = measured_thickness(preview_head());
   EXPECT_GE(all.size(), 16U);
   for (const MeasuredThickness& t : all) {
     EXPECT_GT(t.measured, 0.001) << t.name;
@@ -94,7 +92,7 @@ TEST(CheckHead, FleshIsMeasuredOverTheLandmarksOfTheTable) {
 }
 
 TEST(CheckHead, CrossingExpressionsAreCounted) {
-  HeadTemplate broken = head();
+  HeadTemplate broken = preview_head();
   MatrixX3d through = MatrixX3d::Zero(broken.skin.V.rows(), 3);
   for (const int v : broken.skin_regions.at("upperLip")) through(v, 1) = -0.02;
   broken.expressions = {{"jawOpen", MatrixX3d::Zero(broken.skin.V.rows(), 3)}, {"mouthClose", through}};

@@ -19,6 +19,8 @@
 namespace phiz {
 namespace {
 
+using test::preview_head;
+
 TEST(Muscles, AreThirtyThreeOfExpressionAndTheTwoClosers) {
   const std::vector<MuscleBundle> muscles = make_muscle_bundles(Proportions{});
   std::set<std::string> names;
@@ -47,27 +49,23 @@ TEST(Muscles, AreMirrorImages) {
   }
 }
 
-const HeadTemplate& head() {
-  return test::preview_head();
-}
-
 TEST(MusclesInAHead, ReachTheMarginsOfTheLids) {
-  VectorXd filled = VectorXd::Zero(head().volume.T.rows());
-  for (const Muscle& m : head().muscles) {
+  VectorXd filled = VectorXd::Zero(preview_head().volume.T.rows());
+  for (const Muscle& m : preview_head().muscles) {
     EXPECT_TRUE(std::is_sorted(m.tets.begin(), m.tets.end())) << m.name;
     EXPECT_EQ(std::adjacent_find(m.tets.begin(), m.tets.end()), m.tets.end()) << m.name;
     for (Eigen::Index i = 0; i < m.tets.size(); ++i) filled[m.tets[i]] += m.fraction[i];
   }
   EXPECT_LE(filled.maxCoeff(), 1 + 1e-9);
   for (const char* name : {"leftUpperLid", "leftLowerLid", "rightUpperLid", "rightLowerLid"}) {
-    const auto lid = std::find_if(head().contact_regions.begin(), head().contact_regions.end(),
+    const auto lid = std::find_if(preview_head().contact_regions.begin(), preview_head().contact_regions.end(),
                                   [&](const ContactRegion& region) { return region.name == name; });
-    ASSERT_NE(lid, head().contact_regions.end());
+    ASSERT_NE(lid, preview_head().contact_regions.end());
     const std::set<int> vertices(lid->vertices.begin(), lid->vertices.end());
     int tets = 0;
     for (Eigen::Index t = 0; t < filled.size(); ++t) {
-      const auto corners = head().volume.T.row(t);
-      if (head().volume.region[t] != Tissue::flesh ||
+      const auto corners = preview_head().volume.T.row(t);
+      if (preview_head().volume.region[t] != Tissue::flesh ||
           std::none_of(corners.begin(), corners.end(), [&](int v) { return vertices.contains(v); }))
         continue;
       EXPECT_GE(filled[t], 0.6 - 1e-9) << name;
@@ -78,12 +76,12 @@ TEST(MusclesInAHead, ReachTheMarginsOfTheLids) {
 }
 
 TEST(MusclesInAHead, FillAShareOfTheFleshWithUnitFibres) {
-  const VectorXd volume = tet_volumes(head().volume.V, head().volume.T);
+  const VectorXd volume = tet_volumes(preview_head().volume.V, preview_head().volume.T);
   VectorXd filled = VectorXd::Zero(volume.size());
-  for (const Muscle& m : head().muscles) {
+  for (const Muscle& m : preview_head().muscles) {
     EXPECT_GT(m.tets.size(), 0) << m.name;
     for (Eigen::Index i = 0; i < m.tets.size(); ++i) {
-      EXPECT_EQ(head().volume.region[m.tets[i]], Tissue::flesh);
+      EXPECT_EQ(preview_head().volume.region[m.tets[i]], Tissue::flesh);
       EXPECT_GT(m.fraction[i], 0);
       EXPECT_NEAR(m.direction.row(i).norm(), 1, 1e-9);
       filled[m.tets[i]] += m.fraction[i];
@@ -91,13 +89,13 @@ TEST(MusclesInAHead, FillAShareOfTheFleshWithUnitFibres) {
   }
   EXPECT_LE(filled.maxCoeff(), 1 + 1e-9);
   EXPECT_GT(filled.dot(volume), 20e-6);  // cubic metres: the muscles of a face weigh tens of grams
-  EXPECT_NEAR(active_share(head()), 0.07, 0.02);
+  EXPECT_NEAR(active_share(preview_head()), 0.07, 0.02);
 }
 
 TEST(MusclesInAHead, AreClosedSurfacesInsideTheFlesh) {
-  for (const Muscle& m : head().muscles) {
+  for (const Muscle& m : preview_head().muscles) {
     require_closed_manifold(m.surface, m.name);
-    EXPECT_GE(share_in_flesh(head().volume, m.surface), 0.95) << m.name;
+    EXPECT_GE(share_in_flesh(preview_head().volume, m.surface), 0.95) << m.name;
     const MuscleFacts* facts = find_muscle_facts(m.name);
     ASSERT_NE(facts, nullptr) << m.name;
     EXPECT_EQ(m.ring, facts->form == MuscleForm::ring) << m.name;
@@ -107,7 +105,7 @@ TEST(MusclesInAHead, AreClosedSurfacesInsideTheFlesh) {
 
 TEST(MusclesInAHead, AreThoseOfTheTable) {
   std::set<std::string> names;
-  for (const Muscle& m : head().muscles) names.insert(m.name);
+  for (const Muscle& m : preview_head().muscles) names.insert(m.name);
   const std::vector<std::string> wanted = expression_muscle_names();
   EXPECT_EQ(wanted.size(), 33U);
   for (const std::string& name : wanted) EXPECT_TRUE(names.contains(name)) << name;

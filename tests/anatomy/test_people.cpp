@@ -21,9 +21,7 @@
 namespace phiz {
 namespace {
 
-const HeadTemplate& head() {
-  return test::preview_head();
-}
+using test::preview_head;
 
 /// Largest distance between rows.
 double apart(const MatrixX3d& a, const MatrixX3d& b) {
@@ -31,14 +29,14 @@ double apart(const MatrixX3d& a, const MatrixX3d& b) {
 }
 
 TEST(People, CoefficientsAreDeviatesWithinTwoAndBelongToTheirSeed) {
-  const VectorXd a = random_coefficients(head().identity, 1);
-  EXPECT_EQ(a.size(), head().identity.skin.cols());
-  EXPECT_EQ(a, random_coefficients(head().identity, 1));
-  EXPECT_NE(a, random_coefficients(head().identity, 2));
+  const VectorXd a = random_coefficients(preview_head().identity, 1);
+  EXPECT_EQ(a.size(), preview_head().identity.skin.cols());
+  EXPECT_EQ(a, random_coefficients(preview_head().identity, 1));
+  EXPECT_NE(a, random_coefficients(preview_head().identity, 2));
   double sum = 0, square = 0, most = 0;
   constexpr int seeds = 400;
   for (int seed = 0; seed < seeds; ++seed) {
-    const VectorXd c = random_coefficients(head().identity, static_cast<std::uint64_t>(seed));
+    const VectorXd c = random_coefficients(preview_head().identity, static_cast<std::uint64_t>(seed));
     sum += c.mean() / seeds;
     square += c.squaredNorm() / static_cast<double>(c.size()) / seeds;
     most = std::max(most, c.cwiseAbs().maxCoeff());
@@ -69,11 +67,11 @@ TEST(People, TheModesOfTheBuiltInHeadSpanItsParameters) {
 
 TEST(People, AreHeadsWhoseGeometryHolds) {
   for (const std::uint64_t seed : {1, 3}) {
-    const HeadTemplate person = make_person(head(), random_coefficients(head().identity, seed));
+    const HeadTemplate person = make_person(preview_head(), random_coefficients(preview_head().identity, seed));
     validate(person, "person");
-    EXPECT_EQ(person.volume.T, head().volume.T);
+    EXPECT_EQ(person.volume.T, preview_head().volume.T);
     EXPECT_EQ(person.identity.skin.cols(), 0);
-    EXPECT_GT(apart(person.skin.V, head().skin.V), 0.003);
+    EXPECT_GT(apart(person.skin.V, preview_head().skin.V), 0.003);
     EXPECT_LT(person.jaw.centre.norm(), 1e-12);
     EXPECT_GE(simulated_bone_depth(person), 0.001) << seed;
     EXPECT_GE(drawn_bone_depth(person), 0.001) << seed;
@@ -86,16 +84,16 @@ TEST(People, AreHeadsWhoseGeometryHolds) {
 }
 
 TEST(People, TheSamePersonForAnyNumberOfThreads) {
-  const VectorXd c = random_coefficients(head().identity, 4);
-  const HeadTemplate all = make_person(head(), c);
+  const VectorXd c = random_coefficients(preview_head().identity, 4);
+  const HeadTemplate all = make_person(preview_head(), c);
   const ThreadLimit limit(1);
-  const HeadTemplate one = make_person(head(), c);
+  const HeadTemplate one = make_person(preview_head(), c);
   EXPECT_EQ(all.volume.V, one.volume.V);
   for (std::size_t m = 0; m < all.muscles.size(); ++m) EXPECT_EQ(all.muscles[m].direction, one.muscles[m].direction);
 }
 
 TEST(People, WrongRequestsAreRefused) {
-  HeadTemplate none = head();
+  HeadTemplate none = preview_head();
   none.identity = {};
   try {
     make_person(none, {});
@@ -104,27 +102,28 @@ TEST(People, WrongRequestsAreRefused) {
     EXPECT_EQ(e.kind(), ErrorKind::bad_input);
     EXPECT_NE(std::string(e.what()).find("no model of people"), std::string::npos);
   }
-  EXPECT_THROW(make_person(head(), VectorXd::Zero(2)), Error);
-  EXPECT_THROW(reshape_head(head(), MatrixX3d::Zero(3, 3)), Error);
-  MatrixX3d inside_out = head().skin.V;
+  EXPECT_THROW(make_person(preview_head(), VectorXd::Zero(2)), Error);
+  EXPECT_THROW(reshape_head(preview_head(), MatrixX3d::Zero(3, 3)), Error);
+  MatrixX3d inside_out = preview_head().skin.V;
   inside_out.col(0) *= -1;
-  EXPECT_THROW(reshape_head(head(), inside_out), Error);
+  EXPECT_THROW(reshape_head(preview_head(), inside_out), Error);
 }
 
 TEST(ReshapeHead, CarriesAnAffineMapToEverything) {
   const Vector3d stretch(1.06, 0.96, 1.03);
   const auto map = [&stretch](const MatrixX3d& points) -> MatrixX3d { return points * stretch.asDiagonal(); };
-  const HeadTemplate wide = reshape_head(head(), map(head().skin.V));
+  const HeadTemplate wide = reshape_head(preview_head(), map(preview_head().skin.V));
   // Eyes stay round, tets get rounder by small moves.
   constexpr double exact = 1e-6, smoothed = 0.0006;
-  EXPECT_LT(apart(wide.skin.V, map(head().skin.V)), exact);
-  EXPECT_LT(
-      apart(wide.volume.V(head().skin_vertices, Eigen::all), map(head().volume.V(head().skin_vertices, Eigen::all))),
-      smoothed);
-  EXPECT_LT((wide.volume.V - map(head().volume.V)).rowwise().norm().mean(), 0.0001);
-  EXPECT_LT(apart(find_part(wide, "upperTeeth")->mesh.V, map(find_part(head(), "upperTeeth")->mesh.V)), exact);
+  EXPECT_LT(apart(wide.skin.V, map(preview_head().skin.V)), exact);
+  EXPECT_LT(apart(wide.volume.V(preview_head().skin_vertices, Eigen::all),
+                  map(preview_head().volume.V(preview_head().skin_vertices, Eigen::all))),
+            smoothed);
+  EXPECT_LT((wide.volume.V - map(preview_head().volume.V)).rowwise().norm().mean(), 0.0001);
+  EXPECT_LT(apart(find_part(wide, "upperTeeth")->mesh.V, map(find_part(preview_head(), "upperTeeth")->mesh.V)), exact);
   const MatrixX3d eye = find_part(wide, "leftEye")->mesh.V.rowwise() - wide.left_eye_centre.transpose();
-  const MatrixX3d before = find_part(head(), "leftEye")->mesh.V.rowwise() - head().left_eye_centre.transpose();
+  const MatrixX3d before =
+      find_part(preview_head(), "leftEye")->mesh.V.rowwise() - preview_head().left_eye_centre.transpose();
   const VectorXd ratio = eye.rowwise().norm().array() / before.rowwise().norm().array();
   EXPECT_NEAR(ratio.maxCoeff(), ratio.minCoeff(), 1e-9);
   EXPECT_GT(ratio.minCoeff(), 0.95);
@@ -134,7 +133,7 @@ TEST(ReshapeHead, CarriesAnAffineMapToEverything) {
 }
 
 TEST(ReshapeHead, TurnsWhatTheJawMovesAboutTheNewJoint) {
-  HeadTemplate bare = head();
+  HeadTemplate bare = preview_head();
   Expression open;
   open.name = "jawOpen";
   open.jaw << 0.3, 0.02, 0, -0.001, 0.004;

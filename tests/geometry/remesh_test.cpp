@@ -18,18 +18,18 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-double ball(const Vector3d& p) {
+double ball_distance(const Vector3d& p) {
   return p.norm() - 0.05;
 }
 
-double ring(const Vector3d& p) {
+double ring_distance(const Vector3d& p) {
   return std::hypot(std::hypot(p[0], p[2]) - 0.04, p[1]) - 0.012;
 }
 
 TEST(Polygonise, ASphereIsClosedManifoldAndExact) {
   PolygoniseOptions options;
   options.edge_length = 0.004;
-  const TriangleMesh mesh = polygonise(ball, {Vector3d::Constant(-0.06), Vector3d::Constant(0.06)}, options);
+  const TriangleMesh mesh = polygonise(ball_distance, {Vector3d::Constant(-0.06), Vector3d::Constant(0.06)}, options);
   require_closed_manifold(mesh, "sphere");
   EXPECT_TRUE(self_intersections(mesh).empty());
   EXPECT_LT((mesh.V.rowwise().norm().array() - 0.05).abs().maxCoeff(), 1e-9);
@@ -40,7 +40,7 @@ TEST(Polygonise, ASphereIsClosedManifoldAndExact) {
 TEST(Polygonise, ATorusKeepsItsHole) {
   PolygoniseOptions options;
   options.edge_length = 0.004;
-  const TriangleMesh mesh = polygonise(ring, {Vector3d::Constant(-0.07), Vector3d::Constant(0.07)}, options);
+  const TriangleMesh mesh = polygonise(ring_distance, {Vector3d::Constant(-0.07), Vector3d::Constant(0.07)}, options);
   require_closed_manifold(mesh, "torus");
   EXPECT_EQ(mesh.V.rows() - edges(mesh.F).rows() + mesh.F.rows(), 0);
 }
@@ -49,9 +49,9 @@ TEST(Polygonise, SkippingFarBlocksChangesNothing) {
   PolygoniseOptions options;
   options.edge_length = 0.003;
   const Box box{Vector3d::Constant(-0.09), Vector3d::Constant(0.07)};
-  const TriangleMesh all = polygonise(ring, box, options);
+  const TriangleMesh all = polygonise(ring_distance, box, options);
   options.lipschitz = 1;
-  const TriangleMesh skipped = polygonise(ring, box, options);
+  const TriangleMesh skipped = polygonise(ring_distance, box, options);
   EXPECT_EQ(all.V, skipped.V);
   EXPECT_EQ(all.F, skipped.F);
 }
@@ -60,9 +60,9 @@ TEST(Polygonise, GivesTheSameMeshForAnyNumberOfThreads) {
   PolygoniseOptions options;
   options.edge_length = 0.005;
   const Box box{Vector3d::Constant(-0.07), Vector3d::Constant(0.07)};
-  const TriangleMesh parallel = polygonise(ring, box, options);
+  const TriangleMesh parallel = polygonise(ring_distance, box, options);
   const ThreadLimit limit(1);
-  const TriangleMesh serial = polygonise(ring, box, options);
+  const TriangleMesh serial = polygonise(ring_distance, box, options);
   EXPECT_EQ(parallel.V, serial.V);
   EXPECT_EQ(parallel.F, serial.F);
 }
@@ -70,10 +70,10 @@ TEST(Polygonise, GivesTheSameMeshForAnyNumberOfThreads) {
 TEST(Polygonise, RefusesShapesThatLeaveTheBoxOrAreEmptyOrNotFinite) {
   PolygoniseOptions options;
   options.edge_length = 0.01;
-  EXPECT_THROW(polygonise(ball, {Vector3d::Constant(-0.04), Vector3d::Constant(0.06)}, options), Error);
+  EXPECT_THROW(polygonise(ball_distance, {Vector3d::Constant(-0.04), Vector3d::Constant(0.06)}, options), Error);
   EXPECT_THROW(polygonise([](const Vector3d&) { return 1.0; }, {}, {0.1}), Error);
   EXPECT_THROW(polygonise([](const Vector3d&) { return std::nan(""); }, {}, {0.1}), Error);
-  EXPECT_THROW(polygonise(ball, {}, {}), Error);
+  EXPECT_THROW(polygonise(ball_distance, {}, {}), Error);
 }
 
 TEST(Remesh, GivesTheWantedEdgeOnASphere) {

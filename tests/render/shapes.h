@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -54,6 +55,13 @@ inline Surface surface_of(TriangleMesh mesh) {
   s.name = "test";
   s.mesh = std::move(mesh);
   return s;
+}
+
+/// Null where the scene has no surface of that name.
+inline const Surface* find(const Scene& scene, const std::string& name) {
+  for (const Surface& s : scene.surfaces)
+    if (s.name == name) return &s;
+  return nullptr;
 }
 
 }  // namespace phiz::test

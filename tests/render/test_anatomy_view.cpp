@@ -90,12 +90,6 @@ bool is_bone(const Vector3d& c) {
   return c.minCoeff() > 0.6 * c.maxCoeff() && c.x() > c.z();
 }
 
-const Surface* find(const Scene& scene, const std::string& name) {
-  for (const Surface& s : scene.surfaces)
-    if (s.name == name) return &s;
-  return nullptr;
-}
-
 HeadViewOptions with_style(const char* style) {
   HeadViewOptions options;
   options.style = head_style(style);
@@ -114,7 +108,7 @@ std::string refusal(const HeadTemplate& head, const HeadViewOptions& options) {
 
 TEST(AnatomyView, MusclesAreRedOverBoneWithoutSkin) {
   const Scene scene = head_scene(block_head(), with_style("muscles"));
-  EXPECT_EQ(find(scene, "skin"), nullptr);
+  EXPECT_EQ(test::find(scene, "skin"), nullptr);
   const Seen seen(scene);
   EXPECT_TRUE(is_red(seen.at({0.025, 0, 0.05})));
   EXPECT_TRUE(is_red(seen.at({-0.025, 0, 0.05})));
@@ -123,7 +117,7 @@ TEST(AnatomyView, MusclesAreRedOverBoneWithoutSkin) {
 
 TEST(AnatomyView, StreaksFollowTheFibres) {
   const Scene scene = head_scene(block_head(), with_style("muscles"));
-  const Surface* belly = find(scene, "masseterLeft");
+  const Surface* belly = test::find(scene, "masseterLeft");
   ASSERT_NE(belly, nullptr);
   for (Eigen::Index v = 0; v < belly->fibre.rows(); ++v)
     EXPECT_LT((belly->fibre.row(v) + Eigen::RowVector3d::UnitY()).norm(), 1e-9);  // from the top down
@@ -143,11 +137,11 @@ TEST(AnatomyView, NamesChooseMusclesWithOrWithoutTheirSide) {
   const HeadTemplate head = block_head();
   HeadViewOptions options = with_style("muscles");
   options.muscles = {"masseter"};
-  EXPECT_NE(find(head_scene(head, options), "masseterLeft"), nullptr);
-  EXPECT_NE(find(head_scene(head, options), "masseterRight"), nullptr);
+  EXPECT_NE(test::find(head_scene(head, options), "masseterLeft"), nullptr);
+  EXPECT_NE(test::find(head_scene(head, options), "masseterRight"), nullptr);
   options.muscles = {"Masseter left"};
-  EXPECT_NE(find(head_scene(head, options), "masseterLeft"), nullptr);
-  EXPECT_EQ(find(head_scene(head, options), "masseterRight"), nullptr);
+  EXPECT_NE(test::find(head_scene(head, options), "masseterLeft"), nullptr);
+  EXPECT_EQ(test::find(head_scene(head, options), "masseterRight"), nullptr);
 }
 
 TEST(AnatomyView, UnknownMusclesAreRefusedWithTheNearestNames) {
@@ -172,14 +166,14 @@ TEST(AnatomyView, MusclesWithoutASurfaceAreDrawnAsTheirFibres) {
   HeadTemplate head = block_head();
   head.muscles[0].surface = TriangleMesh();
   const Scene scene = head_scene(head, with_style("muscles"));
-  ASSERT_NE(find(scene, "masseterLeft"), nullptr);
+  ASSERT_NE(test::find(scene, "masseterLeft"), nullptr);
   EXPECT_TRUE(is_red(Seen(scene).at({0.025, 0, 0.035})));
 }
 
 TEST(AnatomyView, FibresGoFromWhiteAtTheOriginToRedAtTheInsertion) {
   const HeadTemplate head = block_head();
   const Scene scene = head_scene(head, with_style("fibres"));
-  const Surface* tubes = find(scene, "masseterLeft");
+  const Surface* tubes = test::find(scene, "masseterLeft");
   ASSERT_NE(tubes, nullptr);
   const Vector3d first = tubes->colour.row(0), last = tubes->colour.bottomRows(1).transpose();
   EXPECT_GT(first.minCoeff(), 0.5);
@@ -239,11 +233,11 @@ TEST(AnatomyView, ContactRegionsArePaintedOnTheSkin) {
   head.contact_regions[0].vertices = VectorXi::LinSpaced(4, 4, 7);
   const HeadViewOptions options = with_style("contacts");
   const Scene scene = head_scene(head, options);
-  ASSERT_NE(find(scene, "upperLip"), nullptr);
+  ASSERT_NE(test::find(scene, "upperLip"), nullptr);
   const auto legend = head_legend(head, options);
   ASSERT_EQ(legend.size(), 1U);
   EXPECT_EQ(legend[0].name, "upper lip");
-  EXPECT_EQ(find(scene, "upperLip")->material.albedo, legend[0].colour);
+  EXPECT_EQ(test::find(scene, "upperLip")->material.albedo, legend[0].colour);
 }
 
 TEST(AnatomyView, LegendsNameEachMuscleOnce) {
@@ -263,7 +257,7 @@ TEST(AnatomyView, MusclesMoveWithTheTetsOfATake) {
   frame.volume.col(1).array() += 0.004F;
   const HeadViewOptions options = with_style("muscles");
   const Scene rest = head_scene(head, options), moved = head_scene(take, frame, options, &head);
-  const MatrixX3d by = find(moved, "masseterLeft")->mesh.V - find(rest, "masseterLeft")->mesh.V;
+  const MatrixX3d by = test::find(moved, "masseterLeft")->mesh.V - test::find(rest, "masseterLeft")->mesh.V;
   EXPECT_LT((by.rowwise() - Eigen::RowVector3d(0, 0.004, 0)).cwiseAbs().maxCoeff(), 1e-6);
 }
 

@@ -58,12 +58,6 @@ Take toy_take(const HeadTemplate& head) {
   return take;
 }
 
-const Surface* find(const Scene& scene, const std::string& name) {
-  for (const Surface& s : scene.surfaces)
-    if (s.name == name) return &s;
-  return nullptr;
-}
-
 TEST(HeadView, StylesShowWhatTheyPromise) {
   const HeadTemplate head = toy_head();
   HeadViewOptions options;
@@ -71,9 +65,9 @@ TEST(HeadView, StylesShowWhatTheyPromise) {
     options.style = head_style(name);
     const Scene scene = head_scene(head, options);
     const bool inside = options.style == HeadStyle::anatomy || options.style == HeadStyle::bones;
-    EXPECT_EQ(find(scene, "skull") != nullptr, inside || options.style == HeadStyle::cutaway) << name;
-    EXPECT_EQ(find(scene, "skin") == nullptr, options.style == HeadStyle::bones) << name;
-    EXPECT_NE(find(scene, "leftEye"), nullptr) << name;
+    EXPECT_EQ(test::find(scene, "skull") != nullptr, inside || options.style == HeadStyle::cutaway) << name;
+    EXPECT_EQ(test::find(scene, "skin") == nullptr, options.style == HeadStyle::bones) << name;
+    EXPECT_NE(test::find(scene, "leftEye"), nullptr) << name;
     EXPECT_NO_THROW(render(scene, head_camera(head, View::three_quarter, 40, 40))) << name;
   }
   EXPECT_THROW(head_style("marble"), Error);
@@ -84,11 +78,12 @@ TEST(HeadView, ExpressionsMoveSkinAndJaw) {
   HeadViewOptions options;
   options.expressions = {{"jawOpen", 0.5}};
   const Scene scene = head_scene(head, options);
-  EXPECT_LT((find(scene, "skin")->mesh.V - head.skin.V - 0.5 * head.expressions[0].displacement).cwiseAbs().maxCoeff(),
-            1e-15);
+  EXPECT_LT(
+      (test::find(scene, "skin")->mesh.V - head.skin.V - 0.5 * head.expressions[0].displacement).cwiseAbs().maxCoeff(),
+      1e-15);
   JawPose pose = JawPose::Zero();
   pose[0] = 0.2;
-  EXPECT_TRUE(find(scene, "lowerTeeth")->transform.isApprox(jaw_transform(head.jaw, pose)));
+  EXPECT_TRUE(test::find(scene, "lowerTeeth")->transform.isApprox(jaw_transform(head.jaw, pose)));
   options.expressions = {{"noSuchShape", 1.0}};
   EXPECT_THROW(head_scene(head, options), Error);
 }
@@ -98,12 +93,12 @@ TEST(HeadView, TakesMoveWithTheHeadUnlessItIsHeldStill) {
   const Take take = toy_take(head);
   HeadViewOptions options;
   const Scene moving = head_scene(take, take.frames[1], options);
-  EXPECT_NEAR(find(moving, "skin")->transform.translation().x(), 0.2, 1e-12);
-  EXPECT_NEAR(find(moving, "leftEye")->transform.translation().x(), 0.2, 1e-12);
+  EXPECT_NEAR(test::find(moving, "skin")->transform.translation().x(), 0.2, 1e-12);
+  EXPECT_NEAR(test::find(moving, "leftEye")->transform.translation().x(), 0.2, 1e-12);
   options.still_head = true;
   const Scene still = head_scene(take, take.frames[1], options);
-  EXPECT_NEAR(find(still, "skin")->transform.translation().norm(), 0, 1e-12);
-  EXPECT_NEAR(find(still, "leftEye")->transform.translation().norm(), 0, 1e-12);
+  EXPECT_NEAR(test::find(still, "skin")->transform.translation().norm(), 0, 1e-12);
+  EXPECT_NEAR(test::find(still, "leftEye")->transform.translation().norm(), 0, 1e-12);
 }
 
 TEST(HeadView, TheCameraOfATakeSeesAllOfItsMotion) {

@@ -4,7 +4,9 @@
 #include <tbb/task_arena.h>
 
 #include <atomic>
+#include <deque>
 #include <future>
+#include <mutex>
 #include <utility>
 
 namespace phiz {
@@ -19,13 +21,36 @@ struct Background::Work {
   }
 };
 
+/// What was started, in order, until a thread comes for it. Held here and not by the tasks of the arena, which are lost
+/// where the program ends before their turn; never destroyed, as a thread may come when statics already are.
+struct Background::Queue {
+  std::mutex mutex;
+  std::deque<std::shared_ptr<Work>> works;
+
+  static Queue& instance() {
+    static Queue& queue = *new Queue;
+    return queue;
+  }
+  void push(std::shared_ptr<Work> work) {
+    const std::lock_guard lock(mutex);
+    works.push_back(std::move(work));
+  }
+  std::shared_ptr<Work> pop() {
+    const std::lock_guard lock(mutex);
+    std::shared_ptr<Work> work = std::move(works.front());
+    works.pop_front();
+    return work;
+  }
+};
+
 void Background::start(std::function<bool()> work) {
   static tbb::task_arena arena(1, 0, tbb::task_arena::priority::low);
   drop();
   work_ = std::make_shared<Work>();
   work_->task = std::packaged_task<bool()>(std::move(work));
   work_->result = work_->task.get_future();
-  arena.enqueue([shared = work_] { shared->run_if_not_taken(); });
+  Queue::instance().push(work_);
+  arena.enqueue([] { Queue::instance().pop()->run_if_not_taken(); });
 }
 
 bool Background::get() {

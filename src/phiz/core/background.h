@@ -23,6 +23,7 @@ class Background {
 
  private:
   struct Work;
+  struct Queue;
   std::shared_ptr<Work> work_;
 };
 

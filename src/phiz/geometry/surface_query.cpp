@@ -13,7 +13,7 @@ namespace phiz {
 
 namespace {
 
-struct Corners {
+struct TriangleCorners {
   Vector3d a, b, c;
 };
 
@@ -27,7 +27,7 @@ struct Dipole {
 
 constexpr double far_ratio = 3.0;  // use the dipole beyond this many radii; keeps the error of the sum below 0.03
 
-double solid_angle(const Vector3d& p, const Corners& t) {
+double solid_angle(const Vector3d& p, const TriangleCorners& t) {
   const Vector3d a = t.a - p, b = t.b - p, c = t.c - p;
   const double la = a.norm(), lb = b.norm(), lc = c.norm();
   const double numerator = a.dot(b.cross(c));
@@ -36,7 +36,7 @@ double solid_angle(const Vector3d& p, const Corners& t) {
 }
 
 /// Moeller and Trumbore (1997), both sides.
-std::optional<RayHit> hit_triangle(const Vector3d& origin, const Vector3d& direction, const Corners& t) {
+std::optional<RayHit> hit_triangle(const Vector3d& origin, const Vector3d& direction, const TriangleCorners& t) {
   const Vector3d e1 = t.b - t.a, e2 = t.c - t.a, q = direction.cross(e2);
   const double det = e1.dot(q);
   if (det == 0) return std::nullopt;
@@ -76,9 +76,9 @@ std::vector<AlignedBox> triangle_boxes(const MatrixX3d& V, const MatrixX3i& F) {
 struct SurfaceQuery::Tree {
   MatrixX3i F;
   BoxTree tree;
-  std::vector<Corners> corners;  // in the order of the tree
-  std::vector<int> place;        // place in that order per triangle
-  std::vector<Dipole> dipoles;   // per node
+  std::vector<TriangleCorners> corners;  // in the order of the tree
+  std::vector<int> place;                // place in that order per triangle
+  std::vector<Dipole> dipoles;           // per node
 
   Tree(const MatrixX3d& V, const MatrixX3i& triangles)
       : F(triangles), tree(triangle_boxes(V, F)), place(static_cast<std::size_t>(F.rows())) {
@@ -87,7 +87,7 @@ struct SurfaceQuery::Tree {
     update(V);
   }
 
-  const Corners& at(int triangle) const {
+  const TriangleCorners& at(int triangle) const {
     return corners[static_cast<std::size_t>(place[static_cast<std::size_t>(triangle)])];
   }
 
@@ -109,7 +109,7 @@ struct SurfaceQuery::Tree {
       };
       if (nodes[n].is_leaf()) {
         for (int i = nodes[n].begin; i < nodes[n].end; ++i) {
-          const Corners& t = corners[static_cast<std::size_t>(i)];
+          const TriangleCorners& t = corners[static_cast<std::size_t>(i)];
           const Vector3d area_normal = 0.5 * (t.b - t.a).cross(t.c - t.a);
           add((t.a + t.b + t.c) / 3, area_normal, area_normal.norm());
         }
@@ -129,7 +129,7 @@ struct SurfaceQuery::Tree {
     tree.nearest_first(
         p, [&best] { return best.squared_distance; },
         [&](int triangle) {
-          const Corners& t = at(triangle);
+          const TriangleCorners& t = at(triangle);
           const Vector3d weights = closest_barycentric(p, t.a, t.b, t.c);
           const Vector3d position = weights[0] * t.a + weights[1] * t.b + weights[2] * t.c;
           const double squared = (p - position).squaredNorm();
@@ -231,7 +231,7 @@ std::vector<int> SurfaceQuery::triangles_in_box(const Vector3d& low, const Vecto
   std::vector<int> found;
   tree_->tree.each_overlapping([&](const AlignedBox& box) { return box.intersects(wanted); },
                                [&](int triangle) {
-                                 const Corners& t = tree_->at(triangle);
+                                 const TriangleCorners& t = tree_->at(triangle);
                                  AlignedBox box(t.a);
                                  if (box.extend(t.b).extend(t.c).intersects(wanted)) found.push_back(triangle);
                                });

@@ -13,8 +13,6 @@ namespace phiz {
 
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
-
 /// Six volumes, edges ij and doubled areas of the faces opposite to k; the sine at edge ij between the faces opposite
 /// to k and l is |ij| six_volume / (area_k area_l).
 struct Shape {

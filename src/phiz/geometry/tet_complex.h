@@ -12,6 +12,7 @@
 namespace phiz {
 
 using Corners = std::array<int, 4>;
+inline constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// Smallest sine of the six dihedral angles; negative when inverted, 0 when flat.
 double least_sine(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d);

@@ -8,7 +8,6 @@ namespace phiz {
 
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr int largest_ring = 14;
 
 /// The other vertices of the tets round an edge, counter-clockwise seen from b; empty unless they close inside of one

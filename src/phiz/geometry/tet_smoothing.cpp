@@ -11,8 +11,6 @@ namespace phiz {
 
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
-
 struct Sample {
   double quality;
   Vector3d gradient;

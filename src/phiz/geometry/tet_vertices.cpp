@@ -8,8 +8,6 @@ namespace phiz {
 
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
-
 struct Wall {
   int tet, corner;
   double quality;  ///< of the tet between it and the new vertex

@@ -10,7 +10,7 @@ namespace phiz {
 
 namespace {
 
-using Corners = std::array<int, 3>;  // corners of a polygon, not vertices
+using PolygonCorners = std::array<int, 3>;  // corners of a polygon, not vertices
 
 Vector3d polygon_normal(const std::vector<Vector3d>& points) {
   Vector3d normal = Vector3d::Zero();
@@ -24,7 +24,7 @@ double turn(const std::vector<Vector3d>& points, const Vector3d& normal, int a, 
   return (points[static_cast<std::size_t>(b)] - p).cross(points[static_cast<std::size_t>(c)] - p).dot(normal);
 }
 
-std::vector<Corners> split_quad(const std::vector<Vector3d>& points, const Vector3d& normal) {
+std::vector<PolygonCorners> split_quad(const std::vector<Vector3d>& points, const Vector3d& normal) {
   const bool first_unfolded = turn(points, normal, 0, 1, 2) > 0 && turn(points, normal, 0, 2, 3) > 0;
   const bool second_unfolded = turn(points, normal, 0, 1, 3) > 0 && turn(points, normal, 1, 2, 3) > 0;
   const bool first_shorter = (points[0] - points[2]).squaredNorm() <= (points[1] - points[3]).squaredNorm();
@@ -39,7 +39,7 @@ struct Ear {
 };
 
 /// Cuts the ear with the widest smallest angle first; a polygon without a proper ear is cut at its least bad corner.
-std::vector<Corners> clip_ears(const std::vector<Vector3d>& points, const Vector3d& normal) {
+std::vector<PolygonCorners> clip_ears(const std::vector<Vector3d>& points, const Vector3d& normal) {
   std::vector<int> left(points.size());
   std::iota(left.begin(), left.end(), 0);
   const auto look_at = [&](std::size_t i) {
@@ -63,7 +63,7 @@ std::vector<Corners> clip_ears(const std::vector<Vector3d>& points, const Vector
   };
   std::vector<Ear> ears;
   for (std::size_t i = 0; i < left.size(); ++i) ears.push_back(look_at(i));
-  std::vector<Corners> triangles;
+  std::vector<PolygonCorners> triangles;
   while (left.size() > 3) {
     const auto best = static_cast<std::size_t>(
         std::max_element(ears.begin(), ears.end(), [](const Ear& a, const Ear& b) { return a.score < b.score; }) -
@@ -89,14 +89,14 @@ TriangleMesh triangulate(const PolygonMesh& mesh, std::vector<int>* face_of_tria
   for (const auto& uvs : mesh.face_uvs) with_uvs = with_uvs && !uvs.empty();
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     const auto& face = mesh.faces[f];
-    std::vector<Corners> triangles{{{0, 1, 2}}};
+    std::vector<PolygonCorners> triangles{{{0, 1, 2}}};
     if (face.size() > 3) {
       std::vector<Vector3d> points;
       for (const int v : face) points.emplace_back(mesh.V.row(v));
       const Vector3d normal = polygon_normal(points);
       triangles = face.size() == 4 ? split_quad(points, normal) : clip_ears(points, normal);
     }
-    for (const Corners& corners : triangles) {
+    for (const PolygonCorners& corners : triangles) {
       const auto pick = [&corners](const std::vector<int>& list) {
         return std::array<int, 3>{list[static_cast<std::size_t>(corners[0])],
                                   list[static_cast<std::size_t>(corners[1])],

@@ -38,7 +38,7 @@ ThinSvd thin_svd(const MatrixXd& A, double tolerance) {
   // Tall: QR first, then the small triangle.
   const Eigen::HouseholderQR<MatrixXd> qr(A);
   const MatrixXd R = qr.matrixQR().topRows(A.cols()).triangularView<Eigen::Upper>();
-  const Eigen::BDCSVD<MatrixXd> svd(R, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::JacobiSVD<MatrixXd, Eigen::NoQRPreconditioner> svd(R, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const VectorXd& s = svd.singularValues();
   Eigen::Index rank = 0;
   while (rank < s.size() && s[rank] > tolerance * s[0]) ++rank;

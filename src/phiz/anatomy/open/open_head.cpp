@@ -37,7 +37,7 @@ struct SizePlan {
   int skin_vertices;
   double skull_edge, mandible_edge;
 };
-constexpr std::array<SizePlan, 3> plans{{{1250, 0.0150, 0.0110}, {5900, 0.0090, 0.0060}, {12500, 0.0050, 0.0036}}};
+constexpr std::array<SizePlan, 3> size_plans{{{1250, 0.0150, 0.0110}, {5900, 0.0090, 0.0060}, {12500, 0.0050, 0.0036}}};
 
 /// Outer skin and inner sheets of a skin.
 BoneEnvelope envelope(const TriangleMesh& skin, const SkinRegions& regions) {
@@ -152,7 +152,7 @@ void add_drawn_muscles(std::vector<MuscleShape>& shapes, const HeadTemplate& hea
 }  // namespace
 
 HeadTemplate build_open_head(const FaceKit& kit, const BodyParts& parts, const OpenHeadOptions& options) {
-  const SizePlan& plan = plans[static_cast<std::size_t>(options.size)];
+  const SizePlan& plan = size_plans[static_cast<std::size_t>(options.size)];
   const auto report = [&options](const char* what) {
     if (options.report) options.report(what);
   };

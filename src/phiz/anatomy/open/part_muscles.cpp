@@ -30,7 +30,7 @@ struct Plan {
   Vector3d direction = Vector3d::Zero();  ///< of pull from origin to insertion; spindles: about
 };
 
-const std::vector<Plan>& plans() {
+const std::vector<Plan>& muscle_plans() {
   const Vector3d up(0, 1, 0), down(0, -1, 0);
   static const std::vector<Plan> all = {
       {"frontalis", -1, down},
@@ -249,7 +249,7 @@ std::vector<MuscleShape> part_muscles(const BodyParts& parts, const SpaceMap& ma
     shapes.push_back({name, {}, {}, {}});
     return shapes.back();
   };
-  for (const Plan& plan : plans()) {
+  for (const Plan& plan : muscle_plans()) {
     add(plan.stem + std::string("Left"));
     add(plan.stem + std::string("Right"));
   }
@@ -281,8 +281,8 @@ std::vector<MuscleShape> part_muscles(const BodyParts& parts, const SpaceMap& ma
   for (MuscleShape& shape : shapes) shape.surface.V += lips.evaluate(shape.surface.V);
   settle(shapes, FleshLayer(skin, bones));
 
-  for (std::size_t i = 0; i < plans().size(); ++i) {
-    const Plan& plan = plans()[i];
+  for (std::size_t i = 0; i < muscle_plans().size(); ++i) {
+    const Plan& plan = muscle_plans()[i];
     for (const bool left : {true, false}) {
       MuscleShape& shape = shapes[2 * i + (left ? 0 : 1)];
       if (plan.landmark < 0) {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-#include "phiz/core/error.h"
+#include "phiz/anatomy/builtin/expressions/skin.h"
 #include "phiz/geometry/spatial_query.h"
 #include "phiz/geometry/surface.h"
 #include "phiz/geometry/topology.h"
@@ -17,20 +17,13 @@ constexpr double facing = -0.5;    ///< greatest cosine between the normals of s
 constexpr int rounds = 12;
 constexpr int reach = 10;  ///< rings of neighbours that follow
 
-const VectorXi& region(const HeadTemplate& head, const std::string& name) {
-  const auto found = head.skin_regions.find(name);
-  if (found == head.skin_regions.end() || found->second.size() == 0)
-    reject(head.name, "the skin region '" + name + "' is missing", "expressions need the regions of lips and lids");
-  return found->second;
-}
-
 }  // namespace
 
 PatchContact::PatchContact(const HeadTemplate& head, const std::string& upper, const std::string& lower, double gap)
     : rest_(head.skin.V),
       gap_(gap),
-      upper_(patch(head, region(head, upper), region(head, lower))),
-      lower_(patch(head, region(head, lower), region(head, upper))) {
+      upper_(patch(head, skin_region(head, upper), skin_region(head, lower))),
+      lower_(patch(head, skin_region(head, lower), skin_region(head, upper))) {
   const auto neighbours = vertex_neighbours(head.skin.F, static_cast<int>(rest_.rows()));
   std::set<int> patches(upper_.vertices.begin(), upper_.vertices.end()), near;
   patches.insert(lower_.vertices.begin(), lower_.vertices.end());

@@ -7,12 +7,11 @@
 
 #include "phiz/anatomy/builtin/ease.h"
 #include "phiz/anatomy/builtin/expressions/skin.h"
-#include "phiz/core/error.h"
 
 namespace phiz {
 namespace {
 
-constexpr int stations = 33;
+constexpr int lid_stations = 33;
 constexpr double degree = std::numbers::pi / 180;
 constexpr double clearance = 0.00012;            ///< that lids keep from the eyeball, metres
 constexpr double closed_gap = 0.4 * degree;      ///< between the inner edges of margins that meet
@@ -22,11 +21,11 @@ constexpr double cheek_reach = 55 * degree;      ///< below the lower margin
 
 /// Stations gather at the canthi, where margins turn in.
 double station(int k) {
-  return 0.5 * (1 - std::cos(std::numbers::pi * k / (stations - 1)));
+  return 0.5 * (1 - std::cos(std::numbers::pi * k / (lid_stations - 1)));
 }
 
 double sample(const VectorXd& values, double across) {
-  const double at = std::acos(1 - 2 * std::clamp(across, 0.0, 1.0)) / std::numbers::pi * (stations - 1);
+  const double at = std::acos(1 - 2 * std::clamp(across, 0.0, 1.0)) / std::numbers::pi * (lid_stations - 1);
   const auto i = std::min(static_cast<Eigen::Index>(at), values.size() - 2);
   const double t = at - static_cast<double>(i);
   return (1 - t) * values[i] + t * values[i + 1];
@@ -35,9 +34,9 @@ double sample(const VectorXd& values, double across) {
 /// Values at the stations through scattered (across, value) points, linear between them.
 VectorXd through(std::vector<std::pair<double, double>> points) {
   std::sort(points.begin(), points.end());
-  VectorXd values(stations);
+  VectorXd values(lid_stations);
   std::size_t i = 0;
-  for (int k = 0; k < stations; ++k) {
+  for (int k = 0; k < lid_stations; ++k) {
     const double a = station(k);
     while (i + 2 < points.size() && points[i + 1].first < a) ++i;
     const double span = points[i + 1].first - points[i].first;
@@ -50,14 +49,14 @@ VectorXd through(std::vector<std::pair<double, double>> points) {
 /// The least of scattered values near every station (within 4 % of the way across); `otherwise` where there is none.
 VectorXd least_near(const std::vector<std::pair<double, double>>& points, const VectorXd& otherwise) {
   VectorXd values = otherwise;
-  for (int k = 0; k < stations; ++k) {
+  for (int k = 0; k < lid_stations; ++k) {
     double least = 1e30;
     for (const auto& [across, value] : points)
       if (std::abs(across - station(k)) < 0.04) least = std::min(least, value);
     if (least < 1e30) values[k] = least;
   }
   const VectorXd rough = values;
-  for (int k = 1; k + 1 < stations; ++k) values[k] = 0.25 * (rough[k - 1] + 2 * rough[k] + rough[k + 1]);
+  for (int k = 1; k + 1 < lid_stations; ++k) values[k] = 0.25 * (rough[k - 1] + 2 * rough[k] + rough[k + 1]);
   return values;
 }
 
@@ -65,13 +64,6 @@ VectorXd least_near(const std::vector<std::pair<double, double>>& points, const 
 double unfold(double from, double to, double x) {
   const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
   return 0.5 * (t + t * t * (3 - 2 * t));
-}
-
-const VectorXi& region(const HeadTemplate& head, const std::string& name) {
-  const auto found = head.skin_regions.find(name);
-  if (found == head.skin_regions.end() || found->second.size() == 0)
-    reject(head.name, "the skin region '" + name + "' is missing", "expressions need the regions of lids and brows");
-  return found->second;
 }
 
 }  // namespace
@@ -110,7 +102,7 @@ LidControl::LidControl(const HeadTemplate& head, const EyeShape& eye, const std:
     return points;
   };
   const auto of_region = [&](const std::string& name, double factor) {
-    const VectorXi& rows = region(head, side + name);
+    const VectorXi& rows = skin_region(head, side + name);
     return collect(head.skin.V(std::vector<int>(rows.begin(), rows.end()), Eigen::all), &Place::elevation, factor);
   };
   VectorXd &bottom = curves_[0], &bottom_inner = curves_[1], &top_inner = curves_[2], &top = curves_[3],
@@ -122,15 +114,15 @@ LidControl::LidControl(const HeadTemplate& head, const EyeShape& eye, const std:
   // The inner edges are the lowest place of the upper lid and the highest one of the lower lid.
   top_inner = least_near(of_region("UpperLid", 1), top).cwiseMin(top);
   bottom_inner = (-least_near(of_region("LowerLid", -1), -bottom)).cwiseMax(bottom);
-  for (int k = 0; k < stations; ++k) {
+  for (int k = 0; k < lid_stations; ++k) {
     if (top[k] < bottom[k]) top[k] = bottom[k] = 0.5 * (top[k] + bottom[k]);
     const double middle = std::clamp(0.5 * (top_inner[k] + bottom_inner[k]), bottom[k], top[k]);
     top_inner[k] = std::clamp(top_inner[k], middle, top[k]);
     bottom_inner[k] = std::clamp(bottom_inner[k], bottom[k], middle);
   }
   orbit = least_near(of_region("Brow", 1), top.array() + 30 * degree);
-  orbit = (orbit.array() - degree).matrix().cwiseMax(top + VectorXd::Constant(stations, 14 * degree));
-  orbit = orbit.cwiseMin(top + VectorXd::Constant(stations, 34 * degree));
+  orbit = (orbit.array() - degree).matrix().cwiseMax(top + VectorXd::Constant(lid_stations, 14 * degree));
+  orbit = orbit.cwiseMin(top + VectorXd::Constant(lid_stations, 34 * degree));
 
   nearness_.setZero(head.volume.V.rows());
   for (const int v : head.skin_vertices) {

@@ -11,7 +11,7 @@
 namespace phiz {
 namespace {
 
-constexpr int stations = 65;
+constexpr int lip_stations = 65;
 constexpr double meeting_share = 0.36;  ///< of the jaw's way down, at which sealed lips meet
 constexpr double retreat_share = 0.15;  ///< of its way back: the upper teeth hold them in front
 
@@ -31,15 +31,15 @@ LipSection section(const LipMotion& m, double along) {
           odd(&LipSection::turn), even(&LipSection::roll), even(&LipSection::thin)};
 }
 
-/// A curve from corner to corner resampled at `stations` places, even in x, right corner first.
+/// A curve from corner to corner resampled at `lip_stations` places, even in x, right corner first.
 MatrixX3d by_width(const MatrixX3d& curve) {
   MatrixX3d rightward = curve;
   if (curve(0, 0) > curve(curve.rows() - 1, 0)) rightward = curve.colwise().reverse();
-  MatrixX3d result(stations, 3);
+  MatrixX3d result(lip_stations, 3);
   const Eigen::Index last = rightward.rows() - 1;
   Eigen::Index i = 0;
-  for (int k = 0; k < stations; ++k) {
-    const double x = rightward(0, 0) + (rightward(last, 0) - rightward(0, 0)) * k / (stations - 1);
+  for (int k = 0; k < lip_stations; ++k) {
+    const double x = rightward(0, 0) + (rightward(last, 0) - rightward(0, 0)) * k / (lip_stations - 1);
     while (i + 1 < last && rightward(i + 1, 0) < x) ++i;
     const double span = rightward(i + 1, 0) - rightward(i, 0);
     const double t = span > 0 ? std::clamp((x - rightward(i, 0)) / span, 0.0, 1.0) : 0;
@@ -63,8 +63,8 @@ LipControl::LipControl(const HeadTemplate& head) {
   for (std::size_t i = 0; i < red.size(); ++i)
     if (red[i]) red_vertices.push_back(head.skin_vertices[static_cast<Eigen::Index>(i)]);
   const MatrixX3d red_points = head.volume.V(red_vertices, Eigen::all);
-  const double half = 0.5 * (line_(stations - 1, 0) - line_(0, 0));
-  const double centre = 0.5 * (line_(stations - 1, 0) + line_(0, 0));
+  const double half = 0.5 * (line_(lip_stations - 1, 0) - line_(0, 0));
+  const double centre = 0.5 * (line_(lip_stations - 1, 0) + line_(0, 0));
   for (Eigen::Index i = 0; i < head.skin_vertices.size(); ++i) {
     const int v = head.skin_vertices[i];
     const Vector3d X = head.volume.V.row(v).transpose();
@@ -75,7 +75,7 @@ LipControl::LipControl(const HeadTemplate& head) {
     // Lining that slides with a corner; the crease behind it counts as part of both lips.
     const bool inside = lining[k] || (in_upper[k] && in_lower[k] && X.z() < frame_at(along).middle.z() - 0.001);
     const double from_corner =
-        std::min((X.transpose() - line_.row(0)).norm(), (X.transpose() - line_.row(stations - 1)).norm());
+        std::min((X.transpose() - line_.row(0)).norm(), (X.transpose() - line_.row(lip_stations - 1)).norm());
     LipVertex entry{v, along, std::pow(1 - smoothstep(0.002, 0.016, distance), 2), 0, 0, 0, 0, true, X};
     entry.follow = 1 - smoothstep(0.002, 0.024, distance);
     if (inside) {
@@ -95,12 +95,12 @@ LipControl::LipControl(const HeadTemplate& head) {
 }
 
 LipControl::Frame LipControl::frame_at(double along) const {
-  const double at = (std::clamp(along, -1.0, 1.0) + 1) / 2 * (stations - 1);
-  const auto i = std::min(static_cast<Eigen::Index>(at), Eigen::Index{stations - 2});
+  const double at = (std::clamp(along, -1.0, 1.0) + 1) / 2 * (lip_stations - 1);
+  const auto i = std::min(static_cast<Eigen::Index>(at), Eigen::Index{lip_stations - 2});
   const double t = at - static_cast<double>(i);
   Frame f;
   f.middle = ((1 - t) * line_.row(i) + t * line_.row(i + 1)).transpose();
-  const Eigen::Index a = std::max<Eigen::Index>(i - 3, 0), b = std::min<Eigen::Index>(i + 4, stations - 1);
+  const Eigen::Index a = std::max<Eigen::Index>(i - 3, 0), b = std::min<Eigen::Index>(i + 4, lip_stations - 1);
   f.along = (line_.row(b) - line_.row(a)).transpose().normalized();
   f.out = f.along.cross(Vector3d::UnitY()).normalized();
   if (f.out.z() < 0) f.out = -f.out;

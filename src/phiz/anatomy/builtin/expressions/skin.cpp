@@ -5,13 +5,18 @@
 
 namespace phiz {
 
-MatrixX3d skin_curve(const HeadTemplate& head, const std::string& region) {
-  const auto found = head.skin_regions.find(region);
+const VectorXi& skin_region(const HeadTemplate& head, const std::string& name) {
+  const auto found = head.skin_regions.find(name);
   if (found == head.skin_regions.end() || found->second.size() < 3)
-    reject(head.name, "the skin region '" + region + "' is missing or has fewer than 3 vertices",
-           "expressions are made from the lip lines and lid margins of the skin");
-  MatrixX3d curve(found->second.size(), 3);
-  for (Eigen::Index i = 0; i < curve.rows(); ++i) curve.row(i) = head.skin.V.row(found->second[i]);
+    reject(head.name, "the skin region '" + name + "' is missing or has fewer than 3 vertices",
+           "expressions need the regions of lips, lids and brows");
+  return found->second;
+}
+
+MatrixX3d skin_curve(const HeadTemplate& head, const std::string& region) {
+  const VectorXi& vertices = skin_region(head, region);
+  MatrixX3d curve(vertices.size(), 3);
+  for (Eigen::Index i = 0; i < curve.rows(); ++i) curve.row(i) = head.skin.V.row(vertices[i]);
   return curve;
 }
 

@@ -14,22 +14,22 @@ namespace {
 
 /// A cross-section of the tongue, metres: the place of its margins (y, z), how far the margins reach to the side, how
 /// far the back of the tongue rises over them and its belly hangs below them, and how deep the median groove is.
-struct Section {
+struct TongueSection {
   double y, z, half_width, rise, belly, groove;
 
-  Section operator+(const Section& o) const {
+  TongueSection operator+(const TongueSection& o) const {
     return {y + o.y, z + o.z, half_width + o.half_width, rise + o.rise, belly + o.belly, groove + o.groove};
   }
-  Section operator*(double t) const { return {t * y, t * z, t * half_width, t * rise, t * belly, t * groove}; }
+  TongueSection operator*(double t) const { return {t * y, t * z, t * half_width, t * rise, t * belly, t * groove}; }
 };
-using Sections = std::array<Section, 6>;  // root, back, dorsum, front, blade, tip
+using Sections = std::array<TongueSection, 6>;  // root, back, dorsum, front, blade, tip
 
 /// Catmull-Rom between the sections at u in [0, 1].
-Section section_at(const Sections& s, double u) {
+TongueSection section_at(const Sections& s, double u) {
   const double x = u * (s.size() - 1);
   const int last = static_cast<int>(s.size()) - 1, i = std::min(static_cast<int>(x), last - 1);
-  const Section &a = s[static_cast<std::size_t>(std::max(i - 1, 0))], &b = s[static_cast<std::size_t>(i)],
-                &c = s[static_cast<std::size_t>(i + 1)], &d = s[static_cast<std::size_t>(std::min(i + 2, last))];
+  const TongueSection &a = s[static_cast<std::size_t>(std::max(i - 1, 0))], &b = s[static_cast<std::size_t>(i)],
+                      &c = s[static_cast<std::size_t>(i + 1)], &d = s[static_cast<std::size_t>(std::min(i + 2, last))];
   const double t = x - i;
   return b + (c + a * -1) * (0.5 * t) + (a * 2 + b * -5 + c * 4 + d * -1) * (0.5 * t * t) +
          (b * 3 + c * -3 + d + a * -1) * (0.5 * t * t * t);
@@ -41,9 +41,9 @@ std::vector<MatrixX3d> rings(const Sections& sections) {
   for (int k = 0; k < along; ++k) {
     // Rings gather at both ends, where the section closes: round in plan, so that the tip is a tip.
     const double u = 0.5 * (1 - std::cos(std::numbers::pi * (k + 0.3) / (along - 0.4)));
-    const Section here = section_at(sections, u);
-    const Section before = section_at(sections, std::max(u - 0.02, 0.0)),
-                  after = section_at(sections, std::min(u + 0.02, 1.0));
+    const TongueSection here = section_at(sections, u);
+    const TongueSection before = section_at(sections, std::max(u - 0.02, 0.0)),
+                        after = section_at(sections, std::min(u + 0.02, 1.0));
     const Vector2d direction = Vector2d(after.z - before.z, after.y - before.y).normalized();
     const auto closing = [](double from_end, double over) {
       return std::sqrt(std::max(0.0, 1 - std::pow(1 - std::min(from_end / over, 1.0), 2)));
@@ -69,7 +69,7 @@ Part make_tongue(const Proportions& p) {
   const Proportions::DentalArch& a = p.arch;
   const double mm = 1e-3, width = a.half_width / 0.029, front = a.z0 + a.depth, back = a.z0, y = a.lower_edge;
   const auto section = [&](double up, double z, double half_width, double rise, double belly, double groove) {
-    return Section{y + up * mm, z, half_width * mm * width, rise * mm, belly * mm, groove * mm};
+    return TongueSection{y + up * mm, z, half_width * mm * width, rise * mm, belly * mm, groove * mm};
   };
   // At rest: the back high under the palate, the margins along the lower teeth, the tip behind the lower incisors.
   const Sections rest{

@@ -9,11 +9,11 @@ namespace phiz {
 namespace {
 
 /// Two half ellipses that share their widest place.
-struct Section {
+struct CraniumSection {
   double y, half_width, z_widest, front, back;
 };
 /// From the cut of the neck to where the vault begins; above the neck the front halves lie inside the face.
-constexpr Section sections[] = {
+constexpr CraniumSection sections[] = {
     {-170, 64.5, -45, 49.5, 61.5}, {-140, 58.8, -39, 52.5, 55.5}, {-116, 55.8, -36.5, 57, 51},
     {-95, 54, -36, 64, 47},        {-80, 53.8, -36, 70, 45.8},    {-65, 54.8, -35.5, 80, 46},
     {-50, 57, -34.5, 85, 48},      {-35, 60.3, -33, 90, 52},      {-20, 63.8, -31, 95, 58.5},
@@ -24,21 +24,24 @@ constexpr int section_count = static_cast<int>(std::size(sections));
 constexpr double vault_foot = 55, crown = 140;
 
 /// Catmull-Rom over the height.
-Section section_at(double y) {
+CraniumSection section_at(double y) {
   if (y >= vault_foot) return sections[section_count - 1];
   int k = 0;
   while (k + 2 < section_count && sections[k + 1].y <= y) ++k;
-  const auto value = [&](int i, double Section::*of) { return sections[std::clamp(i, 0, section_count - 1)].*of; };
-  const auto at = [&](double Section::*of) {
+  const auto value = [&](int i, double CraniumSection::*of) {
+    return sections[std::clamp(i, 0, section_count - 1)].*of;
+  };
+  const auto at = [&](double CraniumSection::*of) {
     const auto slope = [&](int i) {
-      const double dy = value(i + 1, &Section::y) - value(i - 1, &Section::y);
+      const double dy = value(i + 1, &CraniumSection::y) - value(i - 1, &CraniumSection::y);
       return i + 1 == section_count ? 0.0 : (value(i + 1, of) - value(i - 1, of)) / dy;
     };
     const double h = sections[k + 1].y - sections[k].y, t = (y - sections[k].y) / h, t2 = t * t, t3 = t2 * t;
     return (2 * t3 - 3 * t2 + 1) * value(k, of) + (t3 - 2 * t2 + t) * h * slope(k) +
            (3 * t2 - 2 * t3) * value(k + 1, of) + (t3 - t2) * h * slope(k + 1);
   };
-  return {y, at(&Section::half_width), at(&Section::z_widest), at(&Section::front), at(&Section::back)};
+  return {y, at(&CraniumSection::half_width), at(&CraniumSection::z_widest), at(&CraniumSection::front),
+          at(&CraniumSection::back)};
 }
 
 /// The vault's meridians are superellipses, fuller in front; `forward`: cosine of the angle from the front.
@@ -47,7 +50,7 @@ double exponent(double forward) {
 }
 
 /// How far out p lies, as a share of the section's size in its direction.
-double reach(const Section& s, double x, double z, double& forward) {
+double reach(const CraniumSection& s, double x, double z, double& forward) {
   const double a = x / s.half_width, b = (z - s.z_widest) / (z > s.z_widest ? s.front : s.back);
   const double r = std::hypot(a, b);
   forward = r > 1e-12 ? b / r : 0;
@@ -58,7 +61,7 @@ double reach(const Section& s, double x, double z, double& forward) {
 
 Vector3d cranium_point(double angle, double y) {
   const double a = angle * std::numbers::pi / 180;
-  const Section s = section_at(y);
+  const CraniumSection s = section_at(y);
   double share = 1;
   if (y > vault_foot) {
     const double m = exponent(std::cos(a)), rise = std::min(1.0, (y - vault_foot) / (crown - vault_foot));
@@ -72,7 +75,7 @@ Vector3d cranium_under(const Vector3d& p) {
   double forward = 0;
   const Vector3d middle(0, vault_foot, sections[section_count - 1].z_widest);
   if (p.y() <= vault_foot) {
-    const Section s = section_at(p.y());
+    const CraniumSection s = section_at(p.y());
     const double r = reach(s, p.x(), p.z(), forward);
     return {p.x() / r, p.y(), s.z_widest + (p.z() - s.z_widest) / r};
   }
@@ -82,7 +85,7 @@ Vector3d cranium_under(const Vector3d& p) {
 }
 
 double cranium_half_width(double y, double z) {
-  const Section s = section_at(y);
+  const CraniumSection s = section_at(y);
   const double b = (z - s.z_widest) / (z > s.z_widest ? s.front : s.back);
   return s.half_width * std::sqrt(std::max(0.0, 1 - b * b));
 }

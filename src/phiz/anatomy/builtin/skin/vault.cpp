@@ -8,8 +8,8 @@
 namespace phiz {
 namespace {
 
-constexpr int first_behind = 14;   // the column behind the ear
-constexpr double firmness = 0.03;  // large and round: fairness counts more than the places
+constexpr int first_behind = 14;         // the column behind the ear
+constexpr double vault_firmness = 0.03;  // large and round: fairness counts more than the places
 
 /// Where a row runs behind the ear: its angle and height there, and its height at the back midline.
 struct Behind {
@@ -39,7 +39,7 @@ void place_back(SkinForm& form) {
     for (int i = first_behind; i <= SkinTopology::columns; ++i) {
       const double t = static_cast<double>(i - first_behind) / (SkinTopology::columns - first_behind);
       const double y = row.y + (row.y_back - row.y) * t * t * (3 - 2 * t);
-      form.place(topology.sheet(i, row.j), cranium_point(row.angle + (180 - row.angle) * t, y), firmness);
+      form.place(topology.sheet(i, row.j), cranium_point(row.angle + (180 - row.angle) * t, y), vault_firmness);
     }
 }
 
@@ -49,13 +49,13 @@ void place_vault(SkinForm& form) {
     for (int i = j < 24 ? 12 : 0; i < first_behind; ++i) {
       const int v = topology.sheet(i, j);
       const double share = j == 24 && i < 10 ? 0.5 : 1.0;  // the forehead keeps some of its own form
-      form.place(v, form.at(v) + share * (cranium_under(form.at(v)) - form.at(v)), firmness);
+      form.place(v, form.at(v) + share * (cranium_under(form.at(v)) - form.at(v)), vault_firmness);
     }
   const auto crown = [&](int u, int v) { return topology.crown(u, v); };
   for (int u = 0; u < SkinTopology::crown_columns; ++u)
     for (int v = 1; v < SkinTopology::crown_rows; ++v) {
       const Vector3d p = coons(form, crown, u, SkinTopology::crown_columns, v, SkinTopology::crown_rows);
-      form.place(crown(u, v), {p.x(), vault_height(p.x(), p.z()), p.z()}, firmness);
+      form.place(crown(u, v), {p.x(), vault_height(p.x(), p.z()), p.z()}, vault_firmness);
     }
 }
 
