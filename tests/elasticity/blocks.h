@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "phiz/core/random.h"
 #include "phiz/elasticity/projective_dynamics.h"
 #include "phiz/geometry/mesh.h"
 
@@ -52,6 +53,13 @@ ElasticBody body_of(const TetMesh& mesh, const TermWeights& weights, Predicate&&
   for (Eigen::Index v = 0; v < mesh.V.rows(); ++v)
     body.fixed[static_cast<std::size_t>(v)] = is_fixed(Vector3d(mesh.V.row(v)));
   return body;
+}
+
+inline MatrixX3d shaken(const MatrixX3d& V, double amount, std::uint64_t seed) {
+  Random random(seed);
+  MatrixX3d out = V;
+  for (Eigen::Index i = 0; i < out.size(); ++i) out.data()[i] += amount * random.normal();
+  return out;
 }
 
 }  // namespace phiz::testing

@@ -8,7 +8,6 @@
 #include "elasticity/blocks.h"
 #include "phiz/core/error.h"
 #include "phiz/core/parallel.h"
-#include "phiz/core/random.h"
 #include "phiz/elasticity/projective_dynamics.h"
 #include "phiz/elasticity/terms.h"
 #include "phiz/geometry/operators.h"
@@ -18,19 +17,13 @@ namespace {
 
 using testing::body_of;
 using testing::box;
+using testing::shaken;
 
 constexpr auto nowhere = [](const Vector3d&) { return false; };
 constexpr auto at_bottom = [](const Vector3d& p) { return p.y() < 1e-9; };
 
 TetMesh small_box() {
   return box(Vector3d::Zero(), Vector3d(0.04, 0.03, 0.02), 5, 4, 3);
-}
-
-MatrixX3d shaken(const MatrixX3d& V, double amount, std::uint64_t seed) {
-  Random random(seed);
-  MatrixX3d out = V;
-  for (Eigen::Index i = 0; i < out.size(); ++i) out.data()[i] += amount * random.normal();
-  return out;
 }
 
 ElasticBody hung_box(const TermWeights& weights) {

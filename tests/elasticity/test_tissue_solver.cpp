@@ -17,6 +17,7 @@ namespace phiz {
 namespace {
 
 using testing::box;
+using testing::shaken;
 
 /// A block with muscle in half of it, pinned on the left, sliding on a curved floor.
 TissueBody muscle_block() {
@@ -47,13 +48,6 @@ std::vector<Matrix3d> contraction(const TissueBody& body, double share) {
   const Matrix3d S = fibre_stretch(Vector3d(1, 0.2, 0).normalized(), 1 - share) +
                      0.3 * share * Matrix3d(Vector3d(0, 1, 1).asDiagonal());
   return std::vector<Matrix3d>(static_cast<std::size_t>(body.tets.rows()), S);
-}
-
-MatrixX3d shaken(const MatrixX3d& V, double amount, std::uint64_t seed) {
-  Random random(seed);
-  MatrixX3d out = V;
-  for (Eigen::Index i = 0; i < out.size(); ++i) out.data()[i] += amount * random.normal();
-  return out;
 }
 
 double distance(const MatrixX3d& a, const MatrixX3d& b) {

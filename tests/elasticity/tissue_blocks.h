@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "elasticity/blocks.h"
-#include "phiz/core/random.h"
 #include "phiz/elasticity/contact.h"
 #include "phiz/elasticity/tissue_body.h"
 #include "phiz/geometry/topology.h"
@@ -58,13 +57,6 @@ inline void weigh(TissueBody& body, const Vector3d& gravity) {
 
 inline std::vector<Matrix3d> everywhere(const TissueBody& body, const Matrix3d& S) {
   return std::vector<Matrix3d>(static_cast<std::size_t>(body.tets.rows()), S);
-}
-
-inline MatrixX3d shaken(const MatrixX3d& V, double amount, std::uint64_t seed) {
-  Random random(seed);
-  MatrixX3d out = V;
-  for (Eigen::Index i = 0; i < out.size(); ++i) out.data()[i] += amount * random.normal();
-  return out;
 }
 
 inline double total_volume(const TissueBody& body, const MatrixX3d& x) {

@@ -113,4 +113,9 @@ inline Performance small_performance(int frames) {
   return performance;
 }
 
+/// Weights of the small face's three expressions.
+inline VectorXd small_weights(double open, double pout, double press) {
+  return Vector3d(open, pout, press);
+}
+
 }  // namespace phiz::testing

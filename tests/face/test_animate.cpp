@@ -12,7 +12,7 @@
 namespace phiz {
 namespace {
 
-const FaceModel& model() {
+const FaceModel& stiff_model() {
   static const FaceModel instance = [] {
     BlendshapeOptions options;  // stiffer than the default: the toy's sculpts lose more volume than those of heads
     options.volume = 100;
@@ -37,12 +37,12 @@ TEST(Animate, AnInterruptedRunResumesToTheIdenticalTake) {
     AnimateOptions options;
     options.keep_volume = true;
     options.simulation.dynamic = dynamic;
-    const Take whole = animate(model(), performance, options);
+    const Take whole = animate(stiff_model(), performance, options);
     ASSERT_EQ(whole.frames.size(), length);
     // Before the second key frame, just before it, after it, and with nothing left to do.
     for (const std::size_t stop : {std::size_t{5}, std::size_t{key_interval}, std::size_t{key_interval + 3}, length}) {
       std::vector<TakeFrame> frames;
-      animate(model(), performance, options, {}, [&](const TakeFrame& frame, int) {
+      animate(stiff_model(), performance, options, {}, [&](const TakeFrame& frame, int) {
         frames.push_back(frame);
         return frames.size() < stop;
       });
@@ -50,7 +50,7 @@ TEST(Animate, AnInterruptedRunResumesToTheIdenticalTake) {
       std::vector<TakeFrame> finished(stop);  // nothing but what it takes to go on
       const int key = last_key_frame(static_cast<int>(stop));
       if (key > 0) finished[static_cast<std::size_t>(key) - 1] = frames[static_cast<std::size_t>(key) - 1];
-      animate(model(), performance, options, finished, [&](const TakeFrame& frame, int number) {
+      animate(stiff_model(), performance, options, finished, [&](const TakeFrame& frame, int number) {
         EXPECT_EQ(number, static_cast<int>(frames.size()));
         frames.push_back(frame);
         return true;
@@ -62,7 +62,7 @@ TEST(Animate, AnInterruptedRunResumesToTheIdenticalTake) {
 }
 
 TEST(Animate, EveryFrameIsFreeOfPenetrationAndKeepsItsVolume) {
-  const Take take = animate(model(), testing::small_performance(40));
+  const Take take = animate(stiff_model(), testing::small_performance(40));
   EXPECT_EQ(take.frames_planned, 40);
   int touching = 0;
   for (const TakeFrame& frame : take.frames) {
@@ -75,7 +75,7 @@ TEST(Animate, EveryFrameIsFreeOfPenetrationAndKeepsItsVolume) {
 }
 
 TEST(Animate, ColumnsAreMatchedByNameAndTheRestIsReported) {
-  const ExpressionMatch match = match_expressions(model(), testing::small_performance(3));
+  const ExpressionMatch match = match_expressions(stiff_model(), testing::small_performance(3));
   EXPECT_EQ(match.column, (std::vector<int>{0, 1, 2}));
   EXPECT_EQ(match.unmatched, std::vector<std::string>{"browInnerUp"});
   EXPECT_TRUE(match.undriven.empty());
@@ -153,7 +153,7 @@ TEST(Animate, EyeLookWeightsTurnTheEyesWhenNoAnglesWereRecorded) {
 TEST(Animate, FramesOutsideOfThePerformanceAreRefused) {
   AnimateOptions options;
   options.first_frame = 5;
-  EXPECT_THROW(animate(model(), testing::small_performance(3), options), Error);
+  EXPECT_THROW(animate(stiff_model(), testing::small_performance(3), options), Error);
 }
 
 TEST(Performance, ResamplingKeepsTheCurveAndTakesTheShorterArc) {

@@ -166,6 +166,25 @@ TEST(HeadTissue, RatesByTheJawAreDerivatives) {
   }
 }
 
+TEST(HeadTissue, GradientByJawAgreesWithDifferences) {
+  const HeadTemplate& head = preview_head();
+  TissueEnergy energy(tissue().body);
+  MatrixX3d x = head.volume.V;
+  const auto gradient_at = [&](const JawPose& pose) {
+    place_pins(head, tissue(), pose, x);
+    return energy.gradient(x);
+  };
+  gradient_at(open_aside());
+  const std::array<MatrixX3d, 5> derivative = gradient_by_jaw(head, tissue(), open_aside(), energy, x);
+  for (int k = 0; k < 5; ++k) {
+    constexpr double h = 1e-6;
+    const MatrixX3d difference =
+        (gradient_at(open_aside() + h * JawPose::Unit(k)) - gradient_at(open_aside() - h * JawPose::Unit(k))) / (2 * h);
+    const MatrixX3d& found = derivative[static_cast<std::size_t>(k)];
+    EXPECT_LT((found - difference).cwiseAbs().maxCoeff(), 1e-6 * found.cwiseAbs().maxCoeff()) << k;
+  }
+}
+
 /// Points of the bone round a vertex at most 5 mm away, on its side.
 std::vector<Vector3d> bone_around(const HeadTemplate& head, const MatrixX3i& bone, const Slide& slide) {
   constexpr int steps = 8;

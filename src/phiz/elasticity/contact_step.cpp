@@ -13,8 +13,6 @@ namespace phiz {
 
 namespace {
 
-/// Contacts that would stay farther apart than this are left out of the multiplier problem at first, metres.
-constexpr double idle_gap = 2e-4;
 constexpr double touching = 1e-9;      // metres
 constexpr double overlapping = 1e-13;  // metres
 

@@ -12,9 +12,6 @@ namespace phiz {
 
 namespace {
 
-/// Rows whose gap would stay above this after the unconstrained step are left out of the multiplier problem, metres.
-constexpr double idle_gap = 2e-4;
-
 /// Iterations before steps are relaxed.
 constexpr int settle = 5;
 

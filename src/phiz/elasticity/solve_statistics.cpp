@@ -14,4 +14,8 @@ std::string brief_report(const SolveStatistics& statistics) {
   return text;
 }
 
+double milliseconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
 }  // namespace phiz

@@ -2,6 +2,7 @@
 /// What a solver says about its result; every solve returns one.
 #pragma once
 
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -36,5 +37,8 @@ using Trace = std::vector<TraceEntry>;
 
 /// One line for people: "converged in 6 iterations, residual 4.1e-04, 35 contacts, 14.2 ms".
 std::string brief_report(const SolveStatistics& statistics);
+
+/// Wall time from `start` to now.
+double milliseconds_since(std::chrono::steady_clock::time_point start);
 
 }  // namespace phiz

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "phiz/elasticity/tissue_body.h"
 
-#include <Eigen/SVD>
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <string>
 
@@ -101,9 +101,8 @@ FreeMotion::FreeMotion(const TissueBody& body, const MatrixX3d& x)
       directions = Matrix3d::Identity();
     } else {
       constexpr double same = 1e-6;
-      Eigen::JacobiSVD<MatrixXd> svd(normals[v], Eigen::ComputeFullV);
-      svd.setThreshold(same);
-      directions = svd.matrixV().rightCols(3 - svd.rank());
+      const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(normals[v].transpose() * normals[v]);  // ascending
+      directions = eigen.eigenvectors().leftCols((eigen.eigenvalues().array() < same * same).count());
     }
     first_[static_cast<Eigen::Index>(v)] = static_cast<int>(size_);
     size_ += directions.cols();
@@ -271,6 +270,56 @@ SparseMatrixd TissueEnergy::hessian(const MatrixX3d& x, const FreeMotion& motion
   SparseMatrixd H(motion.size(), motion.size());
   H.setFromTriplets(entries.begin(), entries.end());
   return H;
+}
+
+MatrixX3d TissueEnergy::gradient_change(const MatrixX3d& x, const MatrixX3d& d) const {
+  std::vector<Eigen::Matrix<double, 3, 4>> changes(static_cast<std::size_t>(body_.tets.rows()));
+  parallel_for(
+      body_.tets.rows(),
+      [&](std::ptrdiff_t t) {
+        const auto s = static_cast<std::size_t>(t);
+        const Eigen::Matrix<double, 3, 4> hats = hat_gradients(rest_.inverse_edges[s]);
+        const Matrix3d dF = d(body_.tets.row(t), Eigen::all).transpose() * hats.transpose();
+        const Eigen::Matrix<double, 9, 1> dP =
+            tet_stiffness(t, elastic_gradient(x, t), Stiffness::exact) * dF.reshaped();
+        changes[s] = rest_.volume[t] * Eigen::Map<const Matrix3d>(dP.data()) * hats;
+      },
+      grain);
+  MatrixX3d out = MatrixX3d::Zero(x.rows(), 3);
+  if (prediction_.rows() > 0) out = (mass_ / (time_step_ * time_step_)).asDiagonal() * d;
+  for (Eigen::Index t = 0; t < body_.tets.rows(); ++t)
+    for (int k = 0; k < 4; ++k) out.row(body_.tets(t, k)) += changes[static_cast<std::size_t>(t)].col(k).transpose();
+  return out;
+}
+
+SparseMatrixd TissueEnergy::gradient_by_activation(const MatrixX3d& x, const FreeMotion& motion,
+                                                   const VectorXi& tets) const {
+  std::vector<Eigen::Matrix<double, 12, 6>> blocks(static_cast<std::size_t>(tets.size()));
+  parallel_for(
+      tets.size(),
+      [&](std::ptrdiff_t k) {
+        const int t = tets[k];
+        const auto s = static_cast<std::size_t>(t);
+        blocks[static_cast<std::size_t>(k)] =
+            rest_.volume[t] * active(t) * gradient_operator(hat_gradients(rest_.inverse_edges[s])).transpose() *
+            corotated_stress_by_activation(elastic_gradient(x, t), stretches_[s], body_.moduli[s]);
+      },
+      grain);
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(blocks.size() * 72);
+  for (Eigen::Index k = 0; k < tets.size(); ++k)
+    for (int a = 0; a < 4; ++a) {
+      const int vertex = body_.tets(tets[k], a), row = motion.first(vertex);
+      if (row < 0) continue;
+      const MatrixXd reduced =
+          motion.directions(vertex).transpose() * blocks[static_cast<std::size_t>(k)].middleRows<3>(3 * a);
+      for (Eigen::Index i = 0; i < reduced.rows(); ++i)
+        for (int c = 0; c < 6; ++c)
+          entries.emplace_back(row + static_cast<int>(i), static_cast<int>(6 * k) + c, reduced(i, c));
+    }
+  SparseMatrixd out(motion.size(), 6 * tets.size());
+  out.setFromTriplets(entries.begin(), entries.end());
+  return out;
 }
 
 }  // namespace phiz

@@ -93,6 +93,10 @@ class TissueEnergy {
   /// Its Hessian in the unknowns of `motion`, the exact one with what the curvature of the slides adds to it under
   /// their reactions; the pattern does not depend on x.
   SparseMatrixd hessian(const MatrixX3d& x, const FreeMotion& motion, Stiffness kind) const;
+  /// Derivative of gradient(x) when all vertices, pinned ones too, move by d (n x 3).
+  MatrixX3d gradient_change(const MatrixX3d& x, const MatrixX3d& d) const;
+  /// Derivative of motion.reduced(gradient(x)) by the six activations of each of these tets, one tet after the other.
+  SparseMatrixd gradient_by_activation(const MatrixX3d& x, const FreeMotion& motion, const VectorXi& tets) const;
   /// Kilograms per vertex, lumped.
   const VectorXd& mass() const { return mass_; }
 

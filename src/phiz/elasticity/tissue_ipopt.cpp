@@ -20,10 +20,6 @@ using Clock = std::chrono::steady_clock;
 using Ipopt::Index;
 using Ipopt::Number;
 
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
 /// Whether each vertex has a slide that is curved.
 std::vector<char> on_curves(const TissueBody& body) {
   std::vector<char> out(static_cast<std::size_t>(body.rest.rows()), 0);

@@ -8,13 +8,6 @@
 
 namespace phiz {
 
-namespace {
-
-/// Rows whose gap would stay above this after the unconstrained step are left out of the multiplier problem, metres.
-constexpr double idle_gap = 2e-4;
-
-}  // namespace
-
 Contacts TissueEngine::detect(ContactScene* scene, const double* at, double patience) {
   Contacts out;
   if (scene == nullptr) return out;

@@ -23,10 +23,6 @@ using Clock = std::chrono::steady_clock;
 constexpr double gap_tolerance = 1e-9;  // metres
 constexpr int most_nudges = 3;
 
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
 class StaticSolve {
  public:
   StaticSolve(const TissueEnergy& energy, MatrixX3d& x, const NewtonStaticOptions& options, ContactScene* contacts)

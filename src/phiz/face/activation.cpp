@@ -10,6 +10,7 @@
 #include "phiz/core/error.h"
 #include "phiz/core/nearest_words.h"
 #include "phiz/core/parallel.h"
+#include "phiz/face/blend.h"
 #include "phiz/face/flesh.h"
 
 namespace phiz {
@@ -17,7 +18,6 @@ namespace phiz {
 namespace {
 
 constexpr std::size_t chunk = 512;  ///< active tets that are blended together
-constexpr double least_weight = 1e-5;
 
 void require_weights(const VectorXd& weights, std::size_t shapes) {
   constexpr double most = 1e6;
@@ -104,7 +104,7 @@ void ActivationBlender::blend(const VectorXd& weights, Stretches& stretches) con
         std::array<float, 6 * chunk> sum{};
         for (std::size_t j = 0; j < pieces_.size(); ++j) {
           const auto w = static_cast<float>(weights[static_cast<Eigen::Index>(j)]);
-          if (std::abs(w) < least_weight) continue;
+          if (std::abs(w) < least_blend_weight) continue;
           const Piece& piece = pieces_[j];
           for (std::size_t i = piece.start[static_cast<std::size_t>(c)];
                i < piece.start[static_cast<std::size_t>(c) + 1]; ++i) {

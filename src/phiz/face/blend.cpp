@@ -16,7 +16,6 @@ namespace phiz {
 
 namespace {
 
-constexpr double least_weight = 1e-5;
 constexpr std::ptrdiff_t entry_size = blend_values * blend_width;
 static_assert(blend_width == ElementBlocks<float>::width);
 constexpr float largest_entry = 32767;
@@ -145,7 +144,7 @@ void TargetBlender::blend(const VectorXd& weights, ElementBlocks<float>& element
     reject("blend", "needs one finite weight per volumetric shape");
   Eigen::Array<float, blend_values, Eigen::Dynamic> scaled = table.unit;
   for (Eigen::Index m = 0; m < weights.size(); ++m)
-    scaled.col(m) *= std::abs(weights[m]) < least_weight ? 0.0F : static_cast<float>(weights[m]);
+    scaled.col(m) *= std::abs(weights[m]) < least_blend_weight ? 0.0F : static_cast<float>(weights[m]);
   parallel_for(
       table.blocks,
       [&](std::ptrdiff_t b) {

@@ -10,6 +10,9 @@
 
 namespace phiz {
 
+/// Shapes of less weight than this take no part in a blend.
+inline constexpr double least_blend_weight = 1e-5;
+
 /// Jaw pose of expression weights (one per shape): sum w_m b_m within the limits of the joint.
 JawPose blend_jaw(const FaceModel& model, const VectorXd& weights);
 

@@ -143,4 +143,17 @@ Eigen::Matrix<double, 3, 5> pin_rate(const HeadTemplate& head, const HeadTissue&
   return jaw_jacobian(head.jaw, pose, head.volume.V.row(vertex));
 }
 
+std::array<MatrixX3d, 5> gradient_by_jaw(const HeadTemplate& head, const HeadTissue& tissue, const JawPose& pose,
+                                         const TissueEnergy& energy, const MatrixX3d& x) {
+  std::array<MatrixX3d, 5> rates;
+  rates.fill(MatrixX3d::Zero(x.rows(), 3));
+  for (int v = 0; v < x.rows(); ++v) {
+    if (tissue.body.pinned[static_cast<std::size_t>(v)] == 0) continue;
+    const Eigen::Matrix<double, 3, 5> rate = pin_rate(head, tissue, v, pose);
+    for (int k = 0; k < 5; ++k) rates[static_cast<std::size_t>(k)].row(v) = rate.col(k).transpose();
+  }
+  for (MatrixX3d& rate : rates) rate = energy.gradient_change(x, rate);
+  return rates;
+}
+
 }  // namespace phiz

@@ -2,6 +2,7 @@
 /// The flesh of a head as muscle and passive tissue (Ichim et al. 2017, sections 3 and 4; phace.md sections 3, 4, 11).
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "phiz/anatomy/head_template.h"
@@ -48,5 +49,8 @@ void place_jaw(const HeadTemplate& head, const HeadTissue& tissue, const JawPose
 /// Derivative of the place of a pinned vertex by the pose.
 Eigen::Matrix<double, 3, 5> pin_rate(const HeadTemplate& head, const HeadTissue& tissue, int vertex,
                                      const JawPose& pose);
+/// Derivative of energy.gradient(x) by each coordinate of the pose, as pins move with the mandible; n x 3 each.
+std::array<MatrixX3d, 5> gradient_by_jaw(const HeadTemplate& head, const HeadTissue& tissue, const JawPose& pose,
+                                         const TissueEnergy& energy, const MatrixX3d& x);
 
 }  // namespace phiz

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "phiz/face/muscle_contraction.h"
 
-#include <cmath>
-
 #include "phiz/core/error.h"
+#include "phiz/elasticity/muscle_prior.h"
 #include "phiz/face/activation.h"
 
 namespace phiz {
@@ -17,11 +16,10 @@ std::vector<Matrix3d> contract_muscles(const HeadTemplate& head, const HeadTissu
   std::vector<double> share(tets, 0.0);
   for (std::size_t m = 0; m < head.muscles.size(); ++m) {
     const Muscle& muscle = head.muscles[m];
-    const double along = gamma[static_cast<Eigen::Index>(m)], across = 1 / std::sqrt(along);
     for (Eigen::Index i = 0; i < muscle.tets.size(); ++i) {
       const Vector3d d = muscle.direction.row(i);
       const auto t = static_cast<std::size_t>(muscle.tets[i]);
-      sum[t] += muscle.fraction[i] * (across * Matrix3d::Identity() + (along - across) * d * d.transpose());
+      sum[t] += muscle.fraction[i] * contracted_stretch(d, gamma[static_cast<Eigen::Index>(m)]);
       share[t] += muscle.fraction[i];
     }
   }

@@ -29,10 +29,6 @@ MatrixX3d moved(const Eigen::Isometry3d& by, const MatrixX3d& x) {
   return (x * by.linear().transpose()).rowwise() + by.translation().transpose();
 }
 
-double milliseconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
 struct Object {
   int obstacle = -1;
   double radius = 0;  ///< of its vertices about its origin

@@ -22,10 +22,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
 /// Values as a take keeps them (32-bit), so that a resumed run starts from the same bits.
 MatrixX3d as_stored(const MatrixX3d& x) {
   return x.cast<float>().cast<double>();
