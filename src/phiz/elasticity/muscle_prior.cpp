@@ -161,8 +161,8 @@ Activations MusclePrior::curvature(const Activations& a) const {
   return out;
 }
 
-Activations MusclePrior::curvature_times(const Activations& a, const Activations& v) const {
-  Activations out = curvature(a).cwiseProduct(v);
+Activations MusclePrior::curvature_times(const Activations& curvature, const Activations& v) const {
+  Activations out = curvature.cwiseProduct(v);
   for (std::size_t m = 0; m < muscles_.size(); ++m) {
     const double gamma = contractions_[static_cast<Eigen::Index>(m)], across = -0.5 * std::pow(gamma, -1.5);
     const auto rate = [&](const Part& part) {

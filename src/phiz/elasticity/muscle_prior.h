@@ -54,9 +54,9 @@ class MusclePrior {
   /// Diagonal of a quadratic bound of the value at a, positive; stretches that come to exceed their bounds may cost
   /// more.
   Activations curvature(const Activations& a) const;
-  /// Second derivative along v where contractions follow the activations, that of Gauss and Newton: the bound less what
-  /// a change of contractions accounts for.
-  Activations curvature_times(const Activations& a, const Activations& v) const;
+  /// Second derivative along v where contractions follow the activations, that of Gauss and Newton: `curvature` (that
+  /// of the same state) less what a change of contractions accounts for.
+  Activations curvature_times(const Activations& curvature, const Activations& v) const;
 
  private:
   struct Part {

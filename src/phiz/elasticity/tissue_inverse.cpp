@@ -9,6 +9,7 @@
 #include "phiz/core/error.h"
 #include "phiz/elasticity/contact_planes.h"
 #include "phiz/elasticity/tissue_newton.h"
+#include "phiz/elasticity/tissue_solver.h"
 #include "phiz/numerics/cholesky.h"
 
 namespace phiz {
@@ -16,6 +17,7 @@ namespace phiz {
 namespace {
 
 constexpr double millimetre = 1e-3;
+constexpr double rounding = 1e-6;  ///< of objectives by the real-time engine: a micrometre, squared
 
 VectorXi active_tets(const TissueBody& body) {
   std::vector<int> found;
@@ -93,7 +95,7 @@ class Distance {
 class Response {
  public:
   Response(const TissueEnergy& energy, const MatrixX3d& x, const VectorXi& tets,
-           const std::vector<ContactForce>& contacts)
+           const std::vector<ContactRow>& contacts)
       : motion_(energy.body(), x), by_activation_(energy.gradient_by_activation(x, motion_, tets)) {
     for (const Stiffness kind : {Stiffness::exact, Stiffness::projected}) {
       SparseMatrixd H = energy.hessian(x, motion_, kind);
@@ -115,12 +117,10 @@ class Response {
   }
 
  private:
-  void hold_contacts(SparseMatrixd& H, const MatrixX3d& x, const std::vector<ContactForce>& contacts) const {
+  void hold_contacts(SparseMatrixd& H, const MatrixX3d& x, const std::vector<ContactRow>& contacts) const {
     if (contacts.empty()) return;
     constexpr double firmness = 1e3;  // times the stiffness of a vertex
-    std::vector<ContactRow> rows;
-    for (const ContactForce& contact : contacts) rows.push_back(contact.row);
-    const ContactPlanes planes(rows, motion_, x, x);
+    const ContactPlanes planes(contacts, motion_, x, x);
     const Eigen::SparseMatrix<double> all = planes.derivative(motion_);
     Eigen::SparseMatrix<double> normals(all.rows(), planes.size());
     for (Eigen::Index i = 0; i < planes.size(); ++i) normals.col(i) = all.col(3 * i);
@@ -146,6 +146,11 @@ class InverseSolve {
     if (tets_.size() == 0) reject("inverse physics", "the body has no muscle");
     if (!(options.point_weight >= 0 && options.plane_weight >= 0))
       reject("inverse physics", "weights of points and planes must be 0 or more");
+    if (options.exact) return;
+    TissueSolverOptions fine;
+    fine.step_tolerance = 1e-6;
+    fine.penetration_tolerance = 1e-5;
+    solver_.emplace(body, fine);
   }
 
   InverseResult run(const MatrixX3d& x, const std::vector<Matrix3d>& start);
@@ -154,8 +159,8 @@ class InverseSolve {
   struct State {
     Activations a;
     MatrixX3d x;
-    std::vector<ContactForce> contacts;
-    double distance = 0;  ///< part of the objective
+    std::vector<ContactRow> contacts;  ///< that push
+    double distance = 0;               ///< part of the objective
   };
   bool balance(State& state);
   double objective(const State& state) const { return state.distance + prior_.value(state.a); }
@@ -166,6 +171,7 @@ class InverseSolve {
   const InverseOptions& options_;
   ContactScene* contacts_;
   TissueEnergy energy_;
+  std::optional<TissueSolver> solver_;  ///< unless equilibria are to be exact
   VectorXi tets_;
   Distance distance_;
   MusclePrior prior_;
@@ -179,10 +185,25 @@ std::vector<Matrix3d> InverseSolve::stretches(const Activations& a) const {
 }
 
 bool InverseSolve::balance(State& state) {
-  energy_.set_activation(stretches(state.a));
-  NewtonStaticOptions newton;
-  newton.residual_tolerance = options_.residual_tolerance;
-  const SolveStatistics statistics = solve_static(energy_, state.x, newton, contacts_, &state.contacts);
+  const std::vector<Matrix3d> all = stretches(state.a);
+  energy_.set_activation(all);
+  state.contacts.clear();
+  SolveStatistics statistics;
+  if (solver_) {
+    solver_->set_activation(all);
+    statistics = solver_->solve(state.x, contacts_);
+    state.x = solver_->positions();
+    if (contacts_ != nullptr) {
+      constexpr double touching = 2e-5;  // metres
+      const MatrixX3d forces = solver_->contact_forces();
+      for (const ContactRow& row : detect_afresh(*contacts_, state.x))
+        if (row.gap < touching && forces.row(row.vertices[0]) * row.normal > 0) state.contacts.push_back(row);
+    }
+  } else {
+    std::vector<ContactForce> forces;
+    statistics = solve_static(energy_, state.x, {}, contacts_, &forces);
+    for (const ContactForce& force : forces) state.contacts.push_back(force.row);
+  }
   state.distance = distance_.value(state.x);
   return statistics.converged;
 }
@@ -194,7 +215,7 @@ Activations InverseSolve::step(const Response& response, const Activations& a, c
   const Activations curvature = prior_.curvature(a);
   const auto apply = [&](const VectorXd& v) -> VectorXd {
     return response.backward(distance_.hessian_times(response.forward(v))) +
-           prior_.curvature_times(a, v.reshaped(6, a.cols())).reshaped();
+           prior_.curvature_times(curvature, v.reshaped(6, a.cols())).reshaped();
   };
   VectorXd da = VectorXd::Zero(gradient.size()), r = -gradient.reshaped();
   VectorXd z = r.cwiseQuotient(curvature.reshaped()), direction = z;
@@ -220,11 +241,13 @@ InverseResult InverseSolve::run(const MatrixX3d& x, const std::vector<Matrix3d>&
   if (!start.empty())
     for (Eigen::Index k = 0; k < tets_.size(); ++k)
       state.a.col(k) = activation_of(start[static_cast<std::size_t>(tets_[k])]);
+  if (solver_) solver_->restart(x);
   if (!balance(state)) fail("inverse physics found no equilibrium under the activations to start from");
 
   InverseResult result;
   prior_.fit(state.a);
   result.objectives.push_back(objective(state));
+  result.start = distance_.root_mean_square(state.x);
   double first_gradient = 0;
   for (;;) {
     energy_.set_activation(stretches(state.a));
@@ -237,7 +260,7 @@ InverseResult InverseSolve::run(const MatrixX3d& x, const std::vector<Matrix3d>&
     double promised = 0;
     Activations da = Activations::Zero(6, tets_.size());
     if (first_gradient > 0) da = step(response, state.a, gradient, promised);
-    result.converged = promised <= options_.tolerance * now;
+    result.converged = promised <= options_.tolerance * now + (options_.exact ? 0 : rounding);
     if (result.converged || result.iterations == options_.max_iterations) break;
 
     constexpr double longest = 0.3;
@@ -248,9 +271,12 @@ InverseResult InverseSolve::run(const MatrixX3d& x, const std::vector<Matrix3d>&
       trial.a += share * da;
       trial.x += response.forward((trial.a - state.a).reshaped());
       prior_.fit(trial.a);
-      if (!balance(trial) || !(objective(trial) < now - 1e-4 * share * promised)) continue;
-      state = std::move(trial);
-      found = true;
+      if (balance(trial) && objective(trial) < now - 1e-4 * share * promised) {
+        state = std::move(trial);
+        found = true;
+      } else if (solver_) {
+        solver_->restart(state.x);
+      }
     }
     prior_.fit(state.a);
     if (!found) break;
@@ -270,6 +296,8 @@ InverseResult find_activations(const TissueBody& body, const std::vector<ShapeTa
                                const std::vector<MuscleFibres>& muscles, const MatrixX3d& x,
                                const std::vector<Matrix3d>& start, const InverseOptions& options,
                                ContactScene* contacts) {
+  if (x.rows() != body.rest.rows() || !x.allFinite())
+    reject("inverse physics", "needs " + std::to_string(body.rest.rows()) + " finite positions to start from");
   if (!start.empty() && static_cast<Eigen::Index>(start.size()) != body.tets.rows())
     reject("inverse physics", "needs a stretch for every tet to start from, or none");
   return InverseSolve(body, targets, muscles, options, contacts).run(x, start);

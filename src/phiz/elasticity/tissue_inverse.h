@@ -26,8 +26,9 @@ struct InverseOptions {
   double point_weight = 0.1, plane_weight = 1;
   MusclePriorWeights prior;
   int max_iterations = 40;
-  double tolerance = 1e-4;  ///< ends when the next step promises to lower the objective by less than this share
-  double residual_tolerance = 1e-8;  ///< of every equilibrium, as NewtonStaticOptions
+  double tolerance = 1e-4;  ///< ends when the next step promises to lower the objective by a smaller share, or 1e-6
+  /// Equilibria by the reference engine, to its 1e-8, rather than by the real-time one: for small bodies.
+  bool exact = false;
 };
 
 struct InverseResult {
@@ -36,7 +37,8 @@ struct InverseResult {
   MatrixX3d x;                      ///< the equilibrium under them
   bool converged = false;
   int iterations = 0;
-  double distance = 0;             ///< root of the weighted mean squared distance to the places, metres
+  double start = 0;                ///< root of the weighted mean squared distance to the places at the start, metres
+  double distance = 0;             ///< the same at x
   double gradient = 0;             ///< of the objective, relative to that at the start
   std::vector<double> objectives;  ///< at the start and after every iteration, falling
 };
