@@ -42,8 +42,9 @@ function(phiz_test name)
 endfunction()
 
 # phiz_shared_test(NAME TEST SOURCES ... LIBS ...): one that is a single test TEST to CTest, in one process: its tests
-# share what is dear to make, a head.
+# share what is dear to make, a head. Begun before others, as it takes long.
 function(phiz_shared_test name test)
   phiz_test_program(${name} ${ARGN})
   add_test(NAME ${test} COMMAND test_${name} WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}")
+  set_tests_properties(${test} PROPERTIES COST 100)
 endfunction()

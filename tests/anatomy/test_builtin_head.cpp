@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "anatomy/preview_head.h"
 #include "phiz/anatomy/builtin/builtin_head.h"
 #include "phiz/core/error.h"
 #include "phiz/core/parallel.h"
@@ -16,17 +17,14 @@
 namespace phiz {
 namespace {
 
+using test::preview_head;
+
 HeadTemplate build(HeadSize size, std::optional<std::uint64_t> person = {}) {
   BuiltinOptions options;
   options.size = size;
   options.person = person;
   options.expressions = false;
   return build_builtin_head(options);
-}
-
-const HeadTemplate& preview() {
-  static const HeadTemplate head = build(HeadSize::preview);
-  return head;
 }
 
 TriangleMesh bone_surface(const HeadTemplate& head, int region) {
@@ -68,9 +66,9 @@ void expect_sound(const HeadTemplate& head) {
 }
 
 TEST(BuiltinHead, PreviewIsSound) {
-  expect_sound(preview());
-  EXPECT_GT(soft_tets(preview()).size(), 6000);
-  EXPECT_LT(soft_tets(preview()).size(), 10000);
+  expect_sound(preview_head());
+  EXPECT_GT(soft_tets(preview_head()).size(), 6000);
+  EXPECT_LT(soft_tets(preview_head()).size(), 10000);
 }
 
 TEST(BuiltinHead, StandardHasTheTetsOfThePapers) {
@@ -90,7 +88,7 @@ TEST(BuiltinHead, RandomPeopleAreSoundAndDiffer) {
 }
 
 TEST(BuiltinHead, SimulationSkinIsPartOfTheDrawnSkin) {
-  const HeadTemplate& head = preview();
+  const HeadTemplate& head = preview_head();
   const Eigen::Index s = head.skin_vertices.size();
   EXPECT_LT((head.skin_sampling * head.skin.V - head.volume.V.topRows(s)).cwiseAbs().maxCoeff(), 1e-12);
   const MatrixX3d shifted = head.skin_interpolation * MatrixX3d::Constant(s, 3, 0.01);
@@ -98,7 +96,7 @@ TEST(BuiltinHead, SimulationSkinIsPartOfTheDrawnSkin) {
 }
 
 TEST(BuiltinHead, MusclesFillAFairShareOfTheFlesh) {
-  const HeadTemplate& head = preview();
+  const HeadTemplate& head = preview_head();
   const VectorXd volumes = tet_volumes(head.volume.V, head.volume.T);
   VectorXd share = VectorXd::Zero(volumes.size());
   for (const Muscle& m : head.muscles)
@@ -110,8 +108,8 @@ TEST(BuiltinHead, MusclesFillAFairShareOfTheFlesh) {
 TEST(BuiltinHead, DoesNotDependOnTheNumberOfThreads) {
   const ThreadLimit one(1);
   const HeadTemplate again = build(HeadSize::preview);
-  EXPECT_EQ(again.volume.T, preview().volume.T);
-  EXPECT_EQ(again.volume.V, preview().volume.V);
+  EXPECT_EQ(again.volume.T, preview_head().volume.T);
+  EXPECT_EQ(again.volume.V, preview_head().volume.V);
 }
 
 TEST(BuiltinHead, RefusesAnUnknownSize) {
@@ -120,7 +118,7 @@ TEST(BuiltinHead, RefusesAnUnknownSize) {
 
 TEST(ValidateHead, NamesWhatIsWrong) {
   const auto complaint = [](auto damage) {
-    HeadTemplate head = preview();
+    HeadTemplate head = preview_head();
     damage(head);
     try {
       validate(head, "head.phiz");
