@@ -36,9 +36,15 @@ function(phiz_test name)
   if(PHIZ_SANITIZE)
     set(prefix "sanitized.")
   endif()
+  set(properties "")  # an empty value would be taken for the next name
+  if(ARG_LABELS)
+    list(APPEND properties LABELS ${ARG_LABELS})
+  endif()
+  if(ARG_FIXTURES)
+    list(APPEND properties FIXTURES_REQUIRED ${ARG_FIXTURES})
+  endif()
   gtest_discover_tests(test_${name} DISCOVERY_MODE PRE_TEST TEST_PREFIX "${prefix}"
-                       WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}"
-                       PROPERTIES LABELS "${ARG_LABELS}" FIXTURES_REQUIRED "${ARG_FIXTURES}")
+                       WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}" PROPERTIES ${properties})
 endfunction()
 
 # phiz_shared_test(NAME TEST SOURCES ... LIBS ...): one that is a single test TEST to CTest, in one process: its tests
