@@ -71,6 +71,7 @@ MusclePrior::MusclePrior(const std::vector<MuscleFibres>& muscles, const VectorX
       const Vector3d direction = fibres.direction.row(i);
       if (!(fibres.fraction[i] >= 0) || !(std::abs(direction.norm() - 1) < 1e-3))
         reject("muscle " + std::to_string(m), "needs fractions of 0 or more and unit directions");
+      if (fibres.fraction[i] == 0) continue;
       const double volume = fibres.fraction[i] * volumes[*found];
       muscles_[m].push_back({static_cast<int>(found - tets.data()), volume, direction});
       muscle_volume += volume;

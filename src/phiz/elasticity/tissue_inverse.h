@@ -15,8 +15,7 @@ namespace phiz {
 struct ShapeTarget {
   int vertex = -1;
   Vector3d place = Vector3d::Zero();  ///< metres
-  Vector3d normal =
-      Vector3d::Zero();  ///< of the target's surface there, unit; 0: only the distance to the place counts
+  Vector3d normal = Vector3d::Zero();  ///< unit, of the target's surface; 0: only the distance to the place counts
   double weight = 1;
 };
 
@@ -45,11 +44,11 @@ struct InverseResult {
 
 /// Minimises  mean of the weighted squared distances / mm^2 + MusclePrior  over the activations of the tets with
 /// muscle, with the body in equilibrium throughout, by Gauss and Newton's method on the reduced problem: the force
-/// balance is eliminated, f(x, a) = 0, dx = -H^-1 (df/da) da, and the normal equations are solved by conjugate
-/// gradients. Contractions are fitted between the steps (the local/global scheme of section 5.2). Starts from the
-/// stretches of `start` (empty: neutral) and from the state x, which pins and slides hold; contacts that push are kept
-/// in a step. Throws phiz::Error(bad_input) for malformed targets, muscles and options, and phiz::Error(failure) where
-/// there is no equilibrium to start from.
+/// balance is eliminated, f(x, a) = 0, dx = -H^-1 (df/da) da, contractions too (the best ones for any activations,
+/// section 5.2), and the normal equations are solved by conjugate gradients. Starts from the stretches of `start`
+/// (empty: neutral) and from the state x, which pins and slides hold; contacts that push are held in a step. Throws
+/// phiz::Error(bad_input) for malformed targets, muscles and options, and phiz::Error(failure) where there is no
+/// equilibrium to start from.
 InverseResult find_activations(const TissueBody& body, const std::vector<ShapeTarget>& targets,
                                const std::vector<MuscleFibres>& muscles, const MatrixX3d& x,
                                const std::vector<Matrix3d>& start = {}, const InverseOptions& options = {},
