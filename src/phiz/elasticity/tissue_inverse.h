@@ -14,7 +14,7 @@ namespace phiz {
 /// Where a vertex should be.
 struct ShapeTarget {
   int vertex = -1;
-  Vector3d place = Vector3d::Zero();  ///< metres
+  Vector3d place = Vector3d::Zero();   ///< metres
   Vector3d normal = Vector3d::Zero();  ///< unit, of the target's surface; 0: only the distance to the place counts
   double weight = 1;
 };
